@@ -1,0 +1,80 @@
+// What the renderer is asked for and what it gives back. Values only; no GL types.
+#pragma once
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace caustream::render {
+
+struct Transport {
+    int wavelengths = 7;                    // 1..64; ignored when wavelengthsNm is given
+    std::vector<double> wavelengthsNm;      // exact wavelengths, ascending, instead of the uniform ones
+    int photonGrid = 0;                     // photons per side of each caster's emission view; 0: chosen for the GPU
+    int mapSize = 512;                      // texels per side of the spectral map
+    int backSteps = 4;                      // Newton steps to the exit point, 1..16
+    int receiverSteps = 6;                  // bracketed secant steps to the receiver, 1..32
+    bool gapFill = false;                   // the thesis's gap filling
+    bool filter = true;                     // smooth the map where photons are sparse
+    bool forceDispersive = false;           // trace all wavelengths even where the glass does not disperse
+    bool operator==(const Transport&) const = default;
+};
+
+enum class Target { Composite, Spectral, Pass };
+enum class Sample { U8, F16, F32 };
+
+struct Request {
+    std::shared_ptr<const scene::Scene> scene;  // with the session's lights and materials in place of the file's
+    scene::Camera camera;
+    std::optional<float> exposureEv;        // nothing: automatic
+    Transport transport;
+    Target target = Target::Composite;
+    std::string pass;                       // Target::Pass: a name of passNames()
+    Sample sample = Sample::U8;             // U8 for pictures; F16 or F32 for the spectral map; F32 pictures are linear
+    bool wavelengthBands = false;           // Spectral: one band per wavelength instead of RGB
+    int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side
+    bool still = false;                     // 4x anti-aliasing, ledger always counted
+};
+
+struct PlanEntry {
+    std::string pass;
+    bool run = false;
+    std::string reason;                     // why it runs or why it need not
+};
+
+struct StageTime {
+    std::string pass;
+    double ms = 0.0;                        // GPU timestamps on hardware, wall clock around a finish on software
+};
+
+// Flux in units of the light's flux per steradian on its axis (sr; m^2 for a directional light), luminance-weighted.
+struct EnergyLedger {
+    double onCasters = 0, deposited = 0, absorbed = 0, reflected = 0, totalReflection = 0, rejected = 0, leftMap = 0,
+           noReceiver = 0;
+};
+
+struct FrameStats {
+    std::vector<StageTime> stages;
+    std::vector<PlanEntry> plan;
+    EnergyLedger ledger;
+    std::uint32_t photons = 0;              // traced for the map that this frame shows, times no wavelengths
+    double renderMs = 0.0;
+    double exposureEv = 0.0;                // the one used
+    std::vector<std::string> warnings;
+};
+
+struct Frame {
+    int width = 0, height = 0, bands = 3;
+    Sample sample = Sample::U8;
+    std::vector<std::uint8_t> pixels;       // interleaved, rows top to bottom; sRGB for U8, linear otherwise
+    std::vector<double> wavelengthsNm;      // traced
+    glm::mat4 lightMatrix{1.0f};            // world -> map clip space (x, y in -1..1, row 0 at y = -1)
+    std::uint64_t mapHash = 0;              // of the fixed-point map, filled for stills
+    FrameStats stats;
+};
+
+}  // namespace caustream::render

@@ -1,0 +1,40 @@
+// The renderer: every pass, the images that travel between them, and the cache that lets a moving camera reuse light.
+// Lives on the render thread, which owns the GL context.
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "render/frame.h"
+
+namespace caustream::gl {
+class Context;
+class ShaderLibrary;
+}
+
+namespace caustream::render {
+
+class Pipeline {
+   public:
+    Pipeline(gl::Context& context, gl::ShaderLibrary& shaders);
+    ~Pipeline();
+
+    // Compiles every shader; `progress(done, total)` after each. Throws gl::ShaderError.
+    void warmUp(const std::function<void(int, int)>& progress = {});
+
+    // Draws and reads back one frame. Throws Error with a sentence when the GPU refuses (out of memory, lost).
+    Frame run(const Request& request);
+
+    // Forgets what was cached for scenes that no one holds any more.
+    void collect();
+
+   private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+// The names `Target::Pass` knows: one per pass with a picture to show.
+std::span<const std::string> passNames();
+
+}  // namespace caustream::render
