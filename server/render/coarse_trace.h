@@ -1,0 +1,39 @@
+// A few hundred exact light paths on the CPU (Embree): where light lands, so that the map's view can be fitted to it.
+#pragma once
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/view.h"
+#include "scene/scene.h"
+
+namespace caustream::render {
+
+struct Landing {
+    glm::vec3 position;   // on a receiver, world space
+    float flux;           // relative
+};
+
+// Fraction of the on-axis intensity that a spot sends along unit `direction` (KHR_lights_punctual); 1 for other lights.
+float coneFalloff(const scene::Light& light, const glm::vec3& direction);
+
+class CoarseTrace {
+   public:
+    explicit CoarseTrace(const scene::Scene& scene);
+    ~CoarseTrace();
+
+    // Traces `grid` x `grid` photons of the emission view through `caster` at each of `wavelengthsNm`: two interfaces,
+    // interpolated normals, light lost to total reflection left out.
+    std::vector<Landing> trace(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster,
+                               const View& emission, int grid, const std::vector<double>& wavelengthsNm) const;
+
+    // Distance along unit `direction` to the first receiver.
+    std::optional<float> receiverDistance(const glm::vec3& origin, const glm::vec3& direction) const;
+
+   private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace caustream::render

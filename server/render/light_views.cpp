@@ -1,0 +1,225 @@
+#include "render/light_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace caustream::render {
+
+namespace {
+
+constexpr float kWidestTangent = 1.732f;   // 120 degrees across: beyond it texels say little
+constexpr float kNearShare = 0.01f;        // of the distance to what a view is for; nearer things are the lamp's own
+constexpr double kLeftOutShare = 0.005;    // of the flux, given to the outer map
+
+struct Rect {
+    glm::vec2 min{1e30f}, max{-1e30f};
+    bool empty() const { return min.x >= max.x || min.y >= max.y; }
+    void add(const glm::vec2& p) { min = glm::min(min, p), max = glm::max(max, p); }
+    glm::vec2 centre() const { return 0.5f * (min + max); }
+    glm::vec2 half() const { return 0.5f * (max - min); }
+};
+
+bool parallel(const scene::Light& light) { return light.type == scene::LightType::Directional; }
+
+// View of the light along `forward`; a directional light looks from outside the scene's bounds, through `through`.
+View frame(const scene::Scene& scene, const scene::Light& light, const glm::vec3& through) {
+    View view;
+    view.perspective = !parallel(light);
+    const float reach = std::max(scene.geometry->bounds.radius(), 1e-6f);
+    if (view.perspective) {
+        const glm::vec3 away = through - light.position;
+        const float distance = glm::length(away);
+        const glm::vec3 forward = distance > 1e-6f * reach ? away / distance : light.direction;
+        view.worldToView = lookAlong(light.position, forward, glm::vec3(0, 1, 0));
+        view.nearM = kNearShare * std::max(distance, 1e-3f * reach);
+    } else {
+        view.worldToView = lookAlong(through - 3.0f * reach * light.direction, light.direction, glm::vec3(0, 1, 0));
+        view.nearM = 0.0f;
+    }
+    view.farM = 6.0f * reach;
+    return view;
+}
+
+// Image coordinates of a view-space point: tangents, or metres. False behind the light.
+bool project(const View& view, const glm::vec3& p, glm::vec2& out) {
+    if (!view.perspective) {
+        out = glm::vec2(p);
+        return true;
+    }
+    if (-p.z <= 1e-6f * glm::length(p) || p.z >= 0.0f) return false;
+    out = glm::vec2(p) / -p.z;
+    return true;
+}
+
+// Where the caster's vertices lie in the view's image.
+Rect vertexRect(const scene::Scene& scene, const scene::Object& caster, const View& view) {
+    Rect rect;
+    const auto& geometry = *scene.geometry;
+    for (std::uint32_t i = 0; i < caster.indexCount; ++i) {
+        glm::vec2 p;
+        if (project(view, view.toView(geometry.vertices[geometry.indices[caster.firstIndex + i]].position), p)) {
+            rect.add(p);
+        } else {
+            rect.add(glm::vec2(kWidestTangent)), rect.add(glm::vec2(-kWidestTangent));
+        }
+    }
+    if (view.perspective) {
+        rect.min = glm::max(rect.min, glm::vec2(-kWidestTangent));
+        rect.max = glm::min(rect.max, glm::vec2(kWidestTangent));
+    }
+    return rect;
+}
+
+// The cone's outline in the view's image; everything when part of it is behind the view.
+Rect coneRect(const scene::Light& light, const View& view) {
+    const Rect everything{glm::vec2(-1e30f), glm::vec2(1e30f)};
+    if (light.type != scene::LightType::Spot) return everything;
+    const float angle = glm::radians(light.outerConeDeg);
+    const glm::mat4 cone = lookAlong(glm::vec3(0.0f), light.direction, glm::vec3(0, 1, 0));
+    Rect rect;
+    constexpr int kSamples = 64;
+    for (int i = 0; i < kSamples; ++i) {
+        const float turn = glm::two_pi<float>() * (i + 0.5f) / kSamples;
+        const glm::vec3 inCone(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), -std::cos(angle));
+        const glm::vec3 inView = glm::mat3(view.worldToView) * (glm::transpose(glm::mat3(cone)) * inCone);
+        glm::vec2 p;
+        if (inView.z > -0.05f || !project(view, inView, p)) return everything;
+        rect.add(p);
+    }
+    const glm::vec2 slack = 0.003f * rect.half();   // the polygon of samples lies inside the ellipse
+    rect.min -= slack, rect.max += slack;
+    return rect;
+}
+
+// Moves the view's axis into the middle of `rect`, given in its image.
+View recentre(const scene::Scene& scene, const scene::Light& light, const View& view, const Rect& rect, float distance) {
+    const glm::vec2 c = rect.centre();
+    const glm::vec4 through = view.perspective ? glm::vec4(c * distance, -distance, 1) : glm::vec4(c, -distance, 1);
+    return frame(scene, light, glm::vec3(glm::affineInverse(view.worldToView) * through));
+}
+
+glm::vec2 halfExtentAround(const Rect& rect) {
+    return glm::max(glm::max(glm::abs(rect.min), glm::abs(rect.max)), glm::vec2(1e-6f));
+}
+
+// Turns the view about its axis.
+View rolled(View view, float angle) {
+    view.worldToView = glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0, 0, 1)) * view.worldToView;
+    return view;
+}
+
+// The range of one image coordinate that leaves `share` of the flux out at either end.
+glm::vec2 quantileRange(std::vector<std::pair<float, float>>& valueAndFlux, double share) {
+    std::sort(valueAndFlux.begin(), valueAndFlux.end());
+    double total = 0.0;
+    for (const auto& [value, flux] : valueAndFlux) total += flux;
+    double sum = 0.0;
+    glm::vec2 range(valueAndFlux.front().first, valueAndFlux.back().first);
+    bool low = false;
+    for (const auto& [value, flux] : valueAndFlux) {
+        sum += flux;
+        if (!low && sum > share * total) range.x = value, low = true;
+        if (sum >= (1.0 - share) * total) {
+            range.y = value;
+            break;
+        }
+    }
+    return range;
+}
+
+// Where the landings lie in the view's image, less the left-out share. Empty when none is in front of the light.
+Rect landingRect(const View& view, std::span<const Landing> landings, double leftOut) {
+    std::vector<std::pair<float, float>> x, y;
+    for (const Landing& landing : landings) {
+        glm::vec2 p;
+        if (!project(view, view.toView(landing.position), p)) continue;
+        if (view.perspective && std::max(std::abs(p.x), std::abs(p.y)) > kWidestTangent) continue;
+        x.emplace_back(p.x, landing.flux);
+        y.emplace_back(p.y, landing.flux);
+    }
+    if (x.empty()) return {};
+    const glm::vec2 rangeX = quantileRange(x, leftOut / 4.0), rangeY = quantileRange(y, leftOut / 4.0);
+    return {glm::vec2(rangeX.x, rangeY.x), glm::vec2(rangeX.y, rangeY.y)};
+}
+
+}  // namespace
+
+std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster) {
+    View view = frame(scene, light, caster.bounds.centre());
+    for (int pass = 0;; ++pass) {
+        Rect rect = vertexRect(scene, caster, view);
+        const Rect cone = coneRect(light, view);
+        rect.min = glm::max(rect.min, cone.min), rect.max = glm::min(rect.max, cone.max);
+        if (rect.empty()) return std::nullopt;
+        if (pass == 2) {
+            view.halfExtent = halfExtentAround(rect);
+            return view;
+        }
+        view = recentre(scene, light, view, rect, std::max(-view.toView(caster.bounds.centre()).z, view.nearM));
+    }
+}
+
+View backView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster) {
+    View view = frame(scene, light, caster.bounds.centre());
+    view.halfExtent = 1.02f * halfExtentAround(vertexRect(scene, caster, view));
+    return view;
+}
+
+std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings) {
+    glm::vec3 mean(0.0f);
+    float flux = 0.0f;
+    for (const Landing& landing : landings) mean += landing.flux * landing.position, flux += landing.flux;
+    if (!(flux > 0.0f)) return std::nullopt;
+    mean /= flux;
+
+    // The roll whose rectangle is smallest, then its middle on the axis.
+    const View upright = frame(scene, light, mean);
+    const float distance = std::max(-upright.toView(mean).z, upright.nearM);
+    float bestArea = std::numeric_limits<float>::max(), roll = 0.0f;
+    Rect best;
+    constexpr int kRolls = 12;
+    for (int i = 0; i < kRolls; ++i) {
+        const float angle = glm::half_pi<float>() * static_cast<float>(i) / kRolls;
+        const Rect rect = landingRect(rolled(upright, angle), landings, kLeftOutShare);
+        const glm::vec2 size = rect.max - rect.min;
+        if (rect.min.x <= rect.max.x && size.x * size.y < bestArea) bestArea = size.x * size.y, roll = angle, best = rect;
+    }
+    if (bestArea == std::numeric_limits<float>::max()) return std::nullopt;
+    MapViews views;
+    views.inner = rolled(recentre(scene, light, rolled(upright, roll), best, distance), roll);
+    const Rect rect = landingRect(views.inner, landings, kLeftOutShare), all = landingRect(views.inner, landings, 0.0);
+    if (rect.min.x > rect.max.x) return std::nullopt;
+
+    // A few hundred photons end before the caustic does: half a step of their grid wider.
+    constexpr float kMargin = 1.05f;
+    const float least = 1e-4f * (views.inner.perspective ? 1.0f : scene.geometry->bounds.radius());
+    const float widest = views.inner.perspective ? kWidestTangent : 3.0f * scene.geometry->bounds.radius();
+    views.inner.halfExtent = glm::clamp(kMargin * halfExtentAround(rect), glm::vec2(least), glm::vec2(widest));
+    views.outer = views.inner;
+    views.outer.halfExtent = glm::min(glm::max(4.0f * views.inner.halfExtent, 1.1f * halfExtentAround(all)), glm::vec2(widest));
+    return views;
+}
+
+View shadowView(const scene::Scene& scene, const scene::Light& light) {
+    const scene::Bounds& casters = scene.geometry->casterBounds;
+    const scene::Bounds& target = casters.empty() ? scene.geometry->bounds : casters;
+    if (light.type == scene::LightType::Spot) {
+        View view = frame(scene, light, light.position + light.direction * std::max(glm::length(target.centre() - light.position), 1e-3f));
+        view.halfExtent = glm::vec2(std::min(std::tan(glm::radians(std::min(light.outerConeDeg, 80.0f))) * 1.01f, kWidestTangent));
+        return view;
+    }
+    View view = frame(scene, light, target.centre());
+    view.halfExtent = glm::vec2(view.perspective ? 1.2f : 1.01f * scene.geometry->bounds.radius());
+    if (!view.perspective) view.worldToView = frame(scene, light, scene.geometry->bounds.centre()).worldToView;
+    return view;
+}
+
+}  // namespace caustream::render

@@ -1,0 +1,30 @@
+// The views from the light, each fitted to what it is for (Blanchette 2012 has one for everything, and spends most of it
+// on darkness).
+#pragma once
+#include <optional>
+#include <span>
+
+#include "render/coarse_trace.h"
+#include "render/view.h"
+#include "scene/scene.h"
+
+namespace caustream::render {
+
+// Photon grid and front layer: the caster's bounds intersected with the light's cone. Nothing when the cone misses it.
+std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster);
+
+// Back layer: all of the caster, as refracted light leaves it outside the cone too.
+View backView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster);
+
+struct MapViews {
+    View inner;             // the smallest rolled rectangle that takes 99.5% of the flux
+    View outer;             // same axis, wider: what lands outside the inner one
+};
+// Fitted to where light lands; nothing when it lands nowhere. A function of its arguments alone, so that equal input
+// gives equal bits whatever came before.
+std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings);
+
+// The light's cone (at most 120 degrees across), or the frustum towards the casters for a point light.
+View shadowView(const scene::Scene& scene, const scene::Light& light);
+
+}  // namespace caustream::render

@@ -1,0 +1,32 @@
+// Fixed point -> concentration (1 = as bright as direct light), linear BT.709 with the light's own colour divided out.
+// Sums what was deposited for the ledger.
+#include "shared/layout.h"
+#include "common/view.glsl"
+
+layout(local_size_x = kGroupSize) in;
+layout(std430, binding = kBindMap) readonly buffer Map { uint map[]; };
+layout(std430, binding = kBindLedger) buffer Ledger { uint ledger[]; };
+layout(rgba32f, binding = 0) uniform writeonly image2D u_concentration;
+
+uniform View u_view;
+uniform int u_firstTexel;            // of this map in the buffer
+uniform mat3 u_xyzToRgb;
+uniform float u_fluxPerFixed;
+uniform float u_luminance;           // ledger units per fixed-point unit of Y
+
+void main() {
+    ivec2 size = imageSize(u_concentration);
+    int row = int(gl_GlobalInvocationID.x);
+    if (row >= size.y) return;
+    float deposited = 0.0;
+    for (int x = 0; x < size.x; ++x) {
+        int index = 3 * (u_firstTexel + x + row * size.x);
+        vec3 xyz = vec3(map[index], map[index + 1], map[index + 2]);
+        deposited += xyz.y;
+        vec2 uv = (vec2(x, row) + 0.5) / vec2(size);
+        vec3 rgb = u_xyzToRgb * xyz * (u_fluxPerFixed / texelExtent(u_view, uv, 1.0 / vec2(size)));
+        imageStore(u_concentration, ivec2(x, row), vec4(rgb, xyz.y));
+    }
+    uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
+    atomicAdd(ledger[bank + uint(kLedgerDeposited)], uint(deposited * u_luminance + 0.5));
+}

@@ -1,0 +1,36 @@
+// Numbers that C++ and GLSL must agree on; compiles as both.
+#ifdef __cplusplus
+#pragma once
+namespace caustream::layout {
+#define LAYOUT_CONST inline constexpr int
+#else
+#define LAYOUT_CONST const int
+#endif
+
+LAYOUT_CONST kMostWavelengths = 64;
+LAYOUT_CONST kGroupSize = 64;          // threads of a one-dimensional compute group
+LAYOUT_CONST kScanTexels = 16;         // texels one thread of photon_list looks at
+LAYOUT_CONST kListHeader = 4;          // uints before a photon list's texels: the dispatch size (3), the photon count
+
+// Shader storage bindings
+LAYOUT_CONST kBindList = 0;
+LAYOUT_CONST kBindMap = 1;
+LAYOUT_CONST kBindLedger = 2;
+
+// Rows of the energy ledger, fixed point in the map's unit, luminance-weighted. Each exists kLedgerBanks times, a cache
+// line apart, so that two processors do not wait for each other; the banks are summed on the CPU.
+LAYOUT_CONST kLedgerOnCasters = 0;
+LAYOUT_CONST kLedgerAbsorbed = 1;
+LAYOUT_CONST kLedgerReflected = 2;
+LAYOUT_CONST kLedgerTotalReflection = 3;
+LAYOUT_CONST kLedgerRejected = 4;
+LAYOUT_CONST kLedgerLeftMap = 5;
+LAYOUT_CONST kLedgerNoReceiver = 6;
+LAYOUT_CONST kLedgerDeposited = 7;
+LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
+LAYOUT_CONST kLedgerBanks = 32;
+
+#ifdef __cplusplus
+}
+#endif
+#undef LAYOUT_CONST
