@@ -1,0 +1,284 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "protocol/choices.h"
+#include "protocol/frame_header.h"
+
+namespace caustream::protocol {
+namespace {
+
+constexpr double kFarM = 1e6;             // positions, each coordinate
+constexpr std::size_t kMaxNamed = 256;    // lights, or materials, in one document
+
+SceneRef decodeScene(const Item& item) {
+    if (item.size(2, 2) == 0) return {};
+    SceneRef scene;
+    scene.kind = item[0].oneOf(kSceneKinds);
+    scene.name = scene.kind == SceneRef::Kind::Asset ? item[1].sha256() : item[1].text(kNameBytes, 1);
+    return scene;
+}
+
+Spectrum decodeSpectrum(const Item& item) {
+    const std::size_t count = item.size(1, 65);
+    if (count == 0) return {};
+    switch (item[0].oneOf(kSpectra)) {
+        case 0: item.size(1, 1); return EqualEnergy{};
+        case 1: item.size(1, 1); return DaylightD65{};
+        case 2: return item.size(2, 2) ? Blackbody{item[1].number(1000, 40000)} : Blackbody{};
+        default: return Lines{item.ascending(1, 64, kBandMinNm, kBandMaxNm, 1)};
+    }
+}
+
+Intensity decodeIntensity(const Item& item) {
+    if (item.size(2, 2) == 0) return {};
+    return {item[0].oneOf(kIntensityUnits), item[1].number(0, 1e9)};
+}
+
+Cookie decodeCookie(const Item& item) {
+    if (item.size(1, 2) == 0) return {};
+    const bool isTexture = item[0].oneOf(kCookies);
+    if (item.size(isTexture ? 2 : 1, isTexture ? 2 : 1) < 2) return {};
+    return {item[1].u32(0, 4095)};
+}
+
+Absorption decodeAbsorption(const Item& item) {
+    if (item.size(2, 2) == 0) return {};
+    Absorption absorption;
+    absorption.nm = item[0].ascending(0, kMaxNamed, 100, 10000);
+    const Item perM = item[1];
+    const std::size_t count = perM.size(absorption.nm.size(), absorption.nm.size());
+    for (std::size_t i = 0; i < count; ++i) absorption.perM.push_back(perM[i].number(0, 1e6));
+    return absorption;
+}
+
+// Refractive index as README.md defines each formula; NaN where Sellmeier's resonance has none.
+double indexAt(const Dispersion& dispersion, double nm) {
+    const double l2 = nm * nm * 1e-6;  // um^2
+    if (const auto* constant = std::get_if<ConstantIndex>(&dispersion)) return constant->n;
+    if (const auto* cauchy = std::get_if<Cauchy>(&dispersion))
+        return cauchy->A + cauchy->B_um2 / l2 + cauchy->C_um4 / (l2 * l2);
+    if (const auto* abbe = std::get_if<Abbe>(&dispersion)) {
+        // The same dispersion as KHR_materials_dispersion's; its clamp at 1 comes later.
+        return abbe->n_d + (abbe->n_d - 1.0) / abbe->V_d * (523655.0 / (nm * nm) - 1.5168);
+    }
+    const auto& sellmeier = std::get<Sellmeier>(dispersion);
+    double n2 = 1.0;
+    for (std::size_t i = 0; i < 3; ++i) n2 += sellmeier.B[i] * l2 / (l2 - sellmeier.C_um2[i]);
+    return std::sqrt(n2);
+}
+
+LightState decodeLight(const Item& item) {
+    Fields in(item);
+    LightState light;
+    if (const auto v = in.find("type")) light.type = v->oneOf(kLightTypes);
+    if (const auto v = in.find("position")) light.position = v->vec3(-kFarM, kFarM);
+    if (const auto v = in.find("direction")) light.direction = v->direction();
+    if (const auto v = in.find("half_angle_deg")) light.halfAngleDeg = v->number(0.01, 89.9);
+    if (const auto v = in.find("inner_angle_deg")) {
+        light.innerAngleDeg = v->number(0, 89.9);
+        if (light.halfAngleDeg && *light.innerAngleDeg > *light.halfAngleDeg)
+            v->fail(ErrorCode::OutOfRange, "must not be larger than half_angle_deg");
+    }
+    if (const auto v = in.find("intensity")) light.intensity = decodeIntensity(*v);
+    if (const auto v = in.find("color")) light.color = v->vec3(0, 1);
+    if (const auto v = in.find("spectrum")) light.spectrum = decodeSpectrum(*v);
+    if (const auto v = in.find("cookie")) light.cookie = decodeCookie(*v);
+    in.finish();
+    return light;
+}
+
+MaterialState decodeMaterial(const Item& item) {
+    Fields in(item);
+    MaterialState material;
+    if (const auto v = in.find("dispersion")) material.dispersion = decodeDispersion(*v);
+    if (const auto v = in.find("absorption")) material.absorption = decodeAbsorption(*v);
+    in.finish();
+    return material;
+}
+
+// {name: value, ...}
+template <class T>
+std::map<std::string, T> decodeNamed(const Item& item, T (*decodeOne)(const Item&)) {
+    std::map<std::string, T> named;
+    if (!item.json().is_object()) {
+        item.fail(ErrorCode::BadRequest, "must be an object");
+        return named;
+    }
+    if (item.json().size() > kMaxNamed) item.fail(ErrorCode::OutOfRange, "has more than 256 members");
+    for (const auto& [name, value] : item.json().get_ref<const Json::object_t&>()) {
+        const Item child(&value, &item, name, 0, item.decoding());
+        if (name.empty() || name.size() > kNameBytes)
+            item.fail(ErrorCode::OutOfRange, "a name must have 1 to 128 bytes");
+        named.emplace(name, decodeOne(child));
+    }
+    return named;
+}
+
+CameraState decodeCamera(const Item& item) {
+    Fields in(item);
+    CameraState camera;
+    if (const auto v = in.find("eye")) camera.eye = v->vec3(-kFarM, kFarM);
+    if (const auto v = in.find("target")) {
+        camera.target = v->vec3(-kFarM, kFarM);
+        if (camera.eye == camera.target) v->fail(ErrorCode::OutOfRange, "must not be where the eye is");
+    }
+    if (const auto v = in.find("up")) camera.up = v->direction();
+    if (const auto v = in.find("fov_y_deg")) camera.fovYDeg = v->number(1, 170);
+    if (const auto v = in.find("exposure"); v && v->size(1, 2) > 0) {
+        const std::size_t count = (*v)[0].oneOf(kExposures) ? 1 : 2;
+        if (v->size(count, count) == 2) camera.exposureEv = (*v)[1].number(-32, 32);
+    }
+    in.finish();
+    return camera;
+}
+
+TransportState decodeTransport(const Item& item, const Limits& limits) {
+    Fields in(item);
+    TransportState transport;
+    if (const auto v = in.find("mode")) v->oneOf(kTransportModes);
+    if (const auto v = in.find("wavelengths")) {
+        if (v->json().is_array()) transport.wavelengthsNm = v->ascending(1, limits.bands, kBandMinNm, kBandMaxNm);
+        else if (v->json().is_string()) v->fail(ErrorCode::Unsupported, "must be a count or an array of nm");
+        else transport.wavelengths = v->integerInt(1, int(limits.bands));
+    }
+    if (const auto v = in.find("photon_grid")) {
+        transport.photonGrid = v->integerInt(0, 2048);
+        if (transport.photonGrid > 0 && transport.photonGrid < 16)
+            v->fail(ErrorCode::OutOfRange, "must be 0 (chosen by the server) or 16 to 2048");
+    }
+    if (const auto v = in.find("map_size")) {
+        transport.mapSize = v->integerInt(64, 2048);
+        if (transport.mapSize % 16 != 0) v->fail(ErrorCode::OutOfRange, "must be a multiple of 16");
+    }
+    if (const auto v = in.find("back_steps")) transport.backSteps = v->integerInt(1, 16);
+    if (const auto v = in.find("receiver_steps")) transport.receiverSteps = v->integerInt(1, 32);
+    if (const auto v = in.find("gap_fill")) transport.gapFill = v->boolean();
+    if (const auto v = in.find("filter")) transport.filter = v->boolean();
+    if (const auto v = in.find("force_dispersive")) transport.forceDispersive = v->boolean();
+    in.finish();
+    return transport;
+}
+
+// What the fields of `stream` must be together.
+void checkStream(const Item& item, const StreamState& stream) {
+    const auto contradict = [&](const char* field, const char* message) {
+        Item(&item.json(), &item, field, 0, item.decoding()).fail(ErrorCode::BadRequest, message);
+    };
+    const bool isImage = stream.encoding != Encoding::Raw;
+    if (stream.target == Target::Spectral && isImage)
+        contradict("encoding", "the spectral map has only \"raw\"");
+    else if (isImage && stream.sample != Sample::U8)
+        contradict("sample", "\"jpeg\" and \"png\" have only \"u8\"");
+    else if (stream.target == Target::Spectral && stream.sample == Sample::U8)
+        contradict("sample", "the spectral map has only \"f16\" and \"f32\"");
+}
+
+StreamState decodeStream(const Item& item, const Limits& limits) {
+    Fields in(item);
+    StreamState stream;
+    const int minSide = int(limits.frameMinSide), maxSide = int(limits.frameMaxSide);
+    if (const auto v = in.find("target")) decodeTarget(*v, stream.target, stream.pass);
+    if (const auto v = in.find("encoding")) stream.encoding = v->oneOf(kEncodings);
+    if (const auto v = in.find("sample")) stream.sample = v->oneOf(kSamples);
+    if (const auto v = in.find("bands")) stream.wavelengthBands = v->oneOf(kBands);
+    if (const auto v = in.find("width")) stream.width = v->integerInt(minSide, maxSide);
+    if (const auto v = in.find("height")) stream.height = v->integerInt(minSide, maxSide);
+    if (std::uint64_t(stream.width) * std::uint64_t(stream.height) > limits.framePixels)
+        item.fail(ErrorCode::OutOfRange, "width * height must not exceed " + std::to_string(limits.framePixels));
+    if (const auto v = in.find("quality"); v && v->size(1, 2) > 0) {
+        const std::size_t count = (*v)[0].oneOf(kQualities) ? 1 : 2;
+        if (v->size(count, count) == 2) stream.jpegQuality = (*v)[1].integerInt(1, 100);
+    }
+    if (const auto v = in.find("max_fps")) stream.maxFps = v->number(1, 240);
+    in.finish();
+    checkStream(item, stream);
+    return stream;
+}
+
+// The spectral map as it would travel.
+void checkMapBytes(const Item& root, const State& state, const Limits& limits) {
+    if (state.stream.target != Target::Spectral) return;
+    std::uint64_t bands = 3;
+    if (state.stream.wavelengthBands) {
+        bands = state.transport.wavelengthsNm.empty() ? std::uint64_t(state.transport.wavelengths)
+                                                      : state.transport.wavelengthsNm.size();
+        for (const auto& [name, light] : state.lights)
+            if (light.spectrum && std::holds_alternative<Lines>(*light.spectrum))
+                bands = std::max<std::uint64_t>(bands, std::get<Lines>(*light.spectrum).nm.size());
+    }
+    const std::uint64_t side = std::uint64_t(state.transport.mapSize);
+    if (side * side * bands * sampleBytes(state.stream.sample) > limits.framePayloadBytes)
+        Item(&root.json(), &root, "transport.map_size", 0, root.decoding())
+            .fail(ErrorCode::OutOfRange, "this map with these bands and samples is larger than a frame may be");
+}
+
+}  // namespace
+
+Dispersion decodeDispersion(const Item& item) {
+    const std::size_t count = item.size(2, 7);
+    if (count == 0) return {};
+    Dispersion dispersion;
+    switch (item[0].oneOf(kDispersions)) {
+        case 0:
+            if (item.size(2, 2)) dispersion = ConstantIndex{item[1].number(1, 5)};
+            break;
+        case 1:
+            if (item.size(3, 4))
+                dispersion = Cauchy{item[1].number(0.5, 5), item[2].number(-1, 1), count == 4 ? item[3].number(-1, 1) : 0};
+            break;
+        case 2:
+            if (item.size(3, 3)) dispersion = Abbe{item[1].number(1, 5), item[2].number(1, 1e6)};
+            break;
+        default:
+            if (item.size(7, 7)) {
+                Sellmeier sellmeier;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    sellmeier.B[i] = item[1 + i].number(-100, 100);
+                    sellmeier.C_um2[i] = item[4 + i].number(-1e4, 1e4);
+                }
+                dispersion = sellmeier;
+            }
+    }
+    if (item.decoding().error) return {};
+    const bool isClamped = std::holds_alternative<Abbe>(dispersion);
+    for (double nm = kBandMinNm; nm <= kBandMaxNm; nm += 1.0) {
+        const double n = indexAt(dispersion, nm);
+        if (!(n >= (isClamped ? -1e9 : 1.0) && n <= 5.0)) {
+            item.fail(ErrorCode::OutOfRange, "the index must stay within 1 to 5 between 380 and 680 nm");
+            break;
+        }
+    }
+    return dispersion;
+}
+
+void decodeTarget(const Item& item, Target& target, std::string& pass) {
+    const std::string name = item.text(kNameBytes, 1);
+    target = name == "composite" ? Target::Composite : name == "spectral" ? Target::Spectral : Target::Pass;
+    pass = target == Target::Pass ? name : std::string();
+}
+
+tl::expected<State, DecodeError> decodeState(const Json& document, const Limits& limits, bool strict) {
+    Decoding decoding{strict, {}};
+    const Item root(document, decoding);
+    Fields in(root);
+    State state;
+    if (const auto v = in.find("scene")) state.scene = decodeScene(*v);
+    if (const auto v = in.find("lights")) state.lights = decodeNamed(*v, decodeLight);
+    if (const auto v = in.find("materials")) state.materials = decodeNamed(*v, decodeMaterial);
+    if (const auto v = in.find("camera")) state.camera = decodeCamera(*v);
+    if (const auto v = in.find("environment")) {
+        Fields environment(*v);
+        if (const auto color = environment.find("color")) state.environmentColor = color->vec3(0, 100);
+        environment.finish();
+    }
+    if (const auto v = in.find("outside_index")) state.outsideIndex = v->number(1, 5);
+    if (const auto v = in.find("transport")) state.transport = decodeTransport(*v, limits);
+    if (const auto v = in.find("stream")) state.stream = decodeStream(*v, limits);
+    in.finish();
+    if (!decoding.error) checkMapBytes(root, state, limits);
+    if (decoding.error) return tl::unexpected(*std::move(decoding.error));
+    return state;
+}
+
+}  // namespace caustream::protocol
