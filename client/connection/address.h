@@ -1,0 +1,19 @@
+// Where a server is: "http://host:port" as its ready line says it, or "ws://host:port/ws".
+#pragma once
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+namespace caustream::connection {
+
+struct Address {
+    std::string host;
+    int port = 0;       // 1..65535
+    std::string path;   // with its query, "/ws?srv=a1"
+    std::string text() const;  // "ws://host:port/path"
+};
+
+// Port 80 when none is said, path "/ws" when none or "/" is said. The error is a sentence.
+tl::expected<Address, std::string> parseAddress(std::string_view url);
+
+}  // namespace caustream::connection

@@ -1,0 +1,20 @@
+// caustream-shot: frames of a caustream server to files, without a window.
+#include <cstdio>
+
+#include "client/shot/options.h"
+#include "client/shot/shoot.h"
+
+int main(int argc, char** argv) {
+    const auto options = caustream::shot::parseOptions(argc, argv);
+    if (!options) {
+        std::fputs(options.error().text.c_str(), options.error().exitCode == 0 ? stdout : stderr);
+        return options.error().exitCode;
+    }
+    const auto written = caustream::shot::shoot(*options);
+    if (!written) {
+        std::fprintf(stderr, "caustream-shot: %s\n", written.error().c_str());
+        return 1;
+    }
+    std::printf("%s\n", written->c_str());
+    return 0;
+}

@@ -1,0 +1,102 @@
+#include "client/shot/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+namespace caustream::shot {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  caustream-shot --url http://127.0.0.1:8080 --scene gem --out gem.png
+  caustream-shot --url http://127.0.0.1:8080 --scene glass.glb --width 1024 --height 768 --out glass.jpg
+  caustream-shot --url http://127.0.0.1:8080 --scene prism --target spectral --set transport.wavelengths=21 --out map.npy
+  caustream-shot --url http://127.0.0.1:8080 --scene sphere --set 'lights.key.position=[1,2,0.5]' \
+                 --set 'camera.exposure=["ev",9]' --out moved.png
+  caustream-shot --url http://127.0.0.1:8080 --scene gem --moving --frames 60 --out last.jpg
+
+The ending of FILE chooses the format: .png (8 bits, fetched lossless), .npy (float32, linear: the spectral map or the
+picture before exposure's curve), .jpg. A # in FILE becomes the frame's number; without it the last frame is kept.
+FILE.json tells the rest: stream.info, the frame's header, statistics, the map's hash.
+
+--set takes any path of the state document, dotted or as a JSON Pointer (/lights/key.001/position), and a value in JSON:
+  lights.NAME.position=[x,y,z]  lights.NAME.direction=[x,y,z]  lights.NAME.half_angle_deg=20
+  lights.NAME.intensity=["cd",100]  camera.eye=[x,y,z]  camera.target=[x,y,z]  camera.fov_y_deg=40
+  materials.NAME.dispersion=["cauchy",1.458,0.00354]  transport.wavelengths=7  transport.map_size=1024
+  transport.photon_grid=512  transport.gap_fill=true
+
+scripts/run.sh --shot FILE starts a server, takes the picture and stops the server.)";
+
+tl::expected<FileKind, std::string> kindOf(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".png") return FileKind::Png;
+    if (ending == ".npy") return FileKind::Npy;
+    if (ending == ".jpg" || ending == ".jpeg") return FileKind::Jpeg;
+    return tl::make_unexpected("--out " + file + ": the ending chooses the format; use .png, .npy or .jpg");
+}
+
+}  // namespace
+
+tl::expected<Setting, std::string> parseSetting(const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == 0 || equals == text.npos)
+        return tl::make_unexpected("--set " + text + ": write PATH=VALUE, for example lights.key.position=[1,2,0]");
+    const std::string value = text.substr(equals + 1);
+    protocol::Json json = protocol::Json::parse(value, nullptr, false);
+    if (json.is_discarded()) {
+        if (value.find_first_of("[]{}\"") != value.npos)
+            return tl::make_unexpected("--set " + text + ": the value is not JSON; quote it for the shell, 'path=[\"a\",1]'");
+        json = value;
+    }
+    return Setting{text.substr(0, equals), std::move(json)};
+}
+
+tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) {
+    const auto wrong = [](const std::string& why) {
+        return tl::make_unexpected(ParseEnd{1, "caustream-shot: " + why + "; caustream-shot --help shows how\n"});
+    };
+    Options options;
+    std::string url = "http://127.0.0.1:8080";
+    std::vector<std::string> settings;
+    CLI::App app("Fetches frames from a caustream server and writes them to a file.", "caustream-shot");
+    app.footer(kExamples);
+    app.add_option("--url", url, "the server, as its ready line says")->capture_default_str();
+    app.add_option("--scene", options.scene, "a scene of the server, or a GLB file to send it");
+    app.add_option("--set", settings, "PATH=VALUE: sets a value of the state document; repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+    app.add_option("--target", options.target, "composite, spectral, or the name of a pass")->capture_default_str();
+    app.add_option("--width", options.width, "of the picture")->check(CLI::Range(16, 4096))->capture_default_str();
+    app.add_option("--height", options.height, "of the picture")->check(CLI::Range(16, 4096))->capture_default_str();
+    app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1, 100000))->capture_default_str();
+    app.add_flag("--moving", options.moving, "stream while the light circles, instead of stills: times the whole way");
+    app.add_option("--timeout", options.timeoutS, "seconds to wait for the server, each time")
+        ->check(CLI::Range(1, 3600))
+        ->capture_default_str();
+    app.add_option("--token", options.token, "the server's, where it asks for one");
+    app.add_option("--out", options.out, "the file: .png, .npy or .jpg")->required();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return tl::make_unexpected(ParseEnd{0, app.help()});
+    } catch (const CLI::ParseError& error) {
+        return wrong(error.what());
+    }
+
+    auto address = connection::parseAddress(url);
+    if (!address) return wrong(address.error());
+    options.address = std::move(*address);
+    auto kind = kindOf(options.out);
+    if (!kind) return wrong(kind.error());
+    options.kind = *kind;
+    for (const auto& text : settings) {
+        auto setting = parseSetting(text);
+        if (!setting) return wrong(setting.error());
+        options.settings.push_back(std::move(*setting));
+    }
+    return options;
+}
+
+}  // namespace caustream::shot

@@ -1,0 +1,93 @@
+#include "client/shot/session.h"
+
+namespace caustream::shot {
+
+using protocol::Json;
+
+Session::Session(connection::Options options, std::chrono::seconds timeout)
+    : address_(options.address.text()), timeout_(timeout), connection_(std::move(options)) {}
+
+void Session::take(const connection::Event& event) {
+    std::visit(
+        [this]<class T>(const T& value) {
+            if constexpr (std::is_same_v<T, protocol::Welcome>) {
+                welcome_ = value;
+            } else if constexpr (std::is_same_v<T, protocol::Ok>) {
+                newestOk_ = std::max(newestOk_, value.id);
+                if (value.report) report_ = value.report;
+            } else if constexpr (std::is_same_v<T, protocol::ErrorMessage>) {
+                const std::string field = value.field && !value.field->empty() ? *value.field + ": " : "";
+                failure_ = where() + " refused: " + field + value.message + " (" +
+                           std::string(protocol::errorName(value.code)) + ")";
+            } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
+                state_ = value.state;
+                haveState_ = true;
+                warnings_ = value.scene.warnings;
+            } else if constexpr (std::is_same_v<T, protocol::Stats>) {
+                stats_ = value;
+            } else if constexpr (std::is_same_v<T, connection::RoundTrip>) {
+                roundTripsMs_.push_back(value.ms);
+            } else if constexpr (std::is_same_v<T, connection::BadMessage>) {
+                failure_ = where() + ": " + value.why + "; are server and client of the same version?";
+            } else if constexpr (std::is_same_v<T, connection::Disconnected>) {
+                if (failure_) return;  // the error that came before it says more
+                failure_ = welcome_ ? "lost the connection to " + where() + ": " + value.why + "; see the server's log"
+                                    : "cannot reach " + where() + ": " + value.why +
+                                          "; is caustream-server running there? Its ready line shows the address";
+            }
+        },
+        event);
+}
+
+template <class Ready>
+Session::Done Session::waitUntil(const std::string& what, const Ready& ready) {
+    const auto last = std::chrono::steady_clock::now() + timeout_;
+    for (;;) {
+        for (const auto& event : connection_.takeEvents()) take(event);
+        if (failure_) return tl::make_unexpected(*failure_);
+        if (ready()) return {};
+        if (std::chrono::steady_clock::now() > last)
+            return tl::make_unexpected("waited " + std::to_string(timeout_.count()) + " s for " + what + " from " + where() +
+                                       "; try --timeout");
+        connection_.wait(std::chrono::milliseconds(200));
+    }
+}
+
+Session::Done Session::connect() {
+    return waitUntil("a welcome", [this] { return welcome_.has_value(); });
+}
+
+Session::Done Session::update(const Json& patch) {
+    if (patch.contains("scene")) haveState_ = false;
+    const auto id = connection_.update(patch);
+    if (!id) return tl::make_unexpected(id.error().field + ": " + id.error().message);
+    return waitUntil("the answer to a change", [&] { return newestOk_ >= *id; });
+}
+
+Session::Done Session::showFile(std::vector<std::uint8_t> glb) {
+    haveState_ = false;
+    connection_.showFile(std::move(glb));
+    if (auto uploaded = waitUntil("the file's scene", [this] { return report_.has_value(); }); !uploaded) return uploaded;
+    return waitForState();
+}
+
+Session::Done Session::waitForState() {
+    return waitUntil("the scene", [this] { return haveState_; });
+}
+
+tl::expected<connection::Frame, Failure> Session::requestStill() {
+    connection_.requestFrame(true);
+    std::optional<connection::Frame> frame;
+    const auto done = waitUntil("a frame", [&] { return (frame = connection_.takeRequested()).has_value(); });
+    if (!done) return tl::make_unexpected(done.error());
+    return std::move(*frame);
+}
+
+tl::expected<connection::Frame, Failure> Session::nextStreamed() {
+    std::optional<connection::Frame> frame;
+    const auto done = waitUntil("a frame", [&] { return (frame = connection_.takeFrame()).has_value(); });
+    if (!done) return tl::make_unexpected(done.error());
+    return std::move(*frame);
+}
+
+}  // namespace caustream::shot

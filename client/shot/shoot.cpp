@@ -1,0 +1,145 @@
+#include "client/shot/shoot.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "client/connection/image_file.h"
+#include "client/shot/report.h"
+#include "client/shot/session.h"
+#include "protocol/patch.h"
+
+namespace caustream::shot {
+namespace {
+
+using connection::Frame;
+using protocol::Json;
+
+constexpr int kJpegQuality = 95;
+constexpr double kSwingDeg = 12.0;  // how far --moving takes the light to either side
+constexpr int kSwingFrames = 40;    // for there and back
+
+bool isFile(const std::string& scene) {
+    return scene.ends_with(".glb") || scene.find('/') != scene.npos;
+}
+
+tl::expected<std::vector<std::uint8_t>, Failure> readFile(const std::string& name) {
+    std::ifstream in(name, std::ios::binary);
+    if (!in) return tl::make_unexpected("cannot read " + name + "; check --scene");
+    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+    if (bytes.empty()) return tl::make_unexpected(name + " is empty; --scene takes a GLB file");
+    return bytes;
+}
+
+// Which way the frame travels: pictures for PNG unpacked, numbers as float, JPEG as the server made it.
+Json streamPatch(const Options& options) {
+    Json stream = {{"target", options.target}, {"width", options.width}, {"height", options.height}};
+    const bool floats = options.kind == FileKind::Npy || options.target == "spectral";
+    const bool jpeg = options.kind == FileKind::Jpeg && !floats;
+    stream["encoding"] = jpeg ? "jpeg" : "raw";
+    stream["sample"] = floats ? "f32" : "u8";
+    if (jpeg) stream["quality"] = {"fixed", kJpegQuality};
+    return {{"stream", stream}};
+}
+
+Session::Done configure(Session& session, const Options& options) {
+    if (isFile(options.scene)) {
+        auto bytes = readFile(options.scene);
+        if (!bytes) return tl::make_unexpected(bytes.error());
+        if (auto shown = session.showFile(std::move(*bytes)); !shown) return shown;
+    } else {
+        Json patch = Json::object();
+        if (!options.scene.empty()) patch = protocol::sceneChange({protocol::SceneRef::Kind::Builtin, options.scene});
+        else patch["scene"] = session.welcome().state.value("scene", Json{"builtin", "gem"});
+        if (auto updated = session.update(patch); !updated) return updated;
+        if (auto resolved = session.waitForState(); !resolved) return resolved;
+    }
+
+    // One patch for all settings, as some hold only together; the resolved state gives arrays their elements.
+    Json document = session.state(), patch = streamPatch(options);
+    for (const auto& setting : options.settings) {
+        const auto part = protocol::setPath(document, setting.path, setting.value);
+        if (!part) return tl::make_unexpected("--set " + setting.path + ": " + part.error().message);
+        document.merge_patch(*part);
+        patch.merge_patch(*part);
+    }
+    return session.update(patch);
+}
+
+// The first light, swung about a vertical line through what it shines at.
+Json movedLight(const Json& state, int frame) {
+    Json patch = Json::object();
+    if (!state.contains("lights") || state["lights"].empty()) return patch;
+    const auto light = state["lights"].begin();
+    const double phase = 2.0 * std::numbers::pi * frame / kSwingFrames;
+    const double angle = kSwingDeg * std::sin(phase) * std::numbers::pi / 180.0;
+    const auto turned = [&](const Json& v, double x0, double z0) {
+        const double x = v[0].get<double>() - x0, z = v[2].get<double>() - z0;
+        return Json{x0 + std::cos(angle) * x + std::sin(angle) * z, v[1], z0 - std::sin(angle) * x + std::cos(angle) * z};
+    };
+    if (light->contains("position")) {
+        const Json& target = state["camera"]["target"];
+        patch["lights"][light.key()]["position"] = turned((*light)["position"], target[0], target[2]);
+    }
+    if (light->contains("direction")) patch["lights"][light.key()]["direction"] = turned((*light)["direction"], 0, 0);
+    return patch;
+}
+
+std::string fileOf(const Options& options, int frame) {
+    std::string name = options.out;
+    if (const auto hash = name.find('#'); hash != name.npos) {
+        const std::string number = std::to_string(frame);
+        name.replace(hash, 1, std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number);
+    }
+    return name;
+}
+
+connection::Written write(const std::string& file, const Options& options, const Frame& frame) {
+    if (options.kind == FileKind::Npy) return connection::writeNpy(file, frame.image);
+    if (options.kind == FileKind::Png) return connection::writePng(file, connection::toPicture(frame.image));
+    if (frame.header.encoding == protocol::Encoding::Jpeg) return connection::writeBytes(file, frame.encoded);
+    return connection::writeJpeg(file, connection::toPicture(frame.image), kJpegQuality);
+}
+
+}  // namespace
+
+tl::expected<std::string, std::string> shoot(const Options& options) {
+    connection::Options to{.address = options.address, .clientName = "caustream-shot", .strict = true};
+    to.keepEncoded = options.kind == FileKind::Jpeg;
+    if (!options.token.empty()) to.token = options.token;
+    Session session(std::move(to), std::chrono::seconds(options.timeoutS));
+    if (auto connected = session.connect(); !connected) return tl::make_unexpected(connected.error());
+    if (auto configured = configure(session, options); !configured) return tl::make_unexpected(configured.error());
+    if (options.moving) session.connection().startStream(true);
+
+    Report report(options, session);
+    std::string file;
+    for (int i = 0; i < options.frames; ++i) {
+        const std::uint64_t asked = connection::nowUs();
+        if (options.moving && i > 0) {
+            const auto moved = session.connection().input(movedLight(session.state(), i));
+            if (!moved) return tl::make_unexpected(moved.error().field + ": " + moved.error().message);
+        }
+        auto frame = options.moving ? session.nextStreamed() : session.requestStill();
+        if (!frame) return tl::make_unexpected(frame.error());
+        session.connection().acknowledge(*frame, 0);
+        report.add(*frame, connection::nowUs() - asked);
+
+        file = fileOf(options, i);
+        const bool last = i + 1 == options.frames;
+        if (!last && file == options.out) continue;
+        if (auto written = write(file, options, *frame); !written) return tl::make_unexpected(written.error());
+        if (last) {
+            const std::string text = report.json(file, *frame, session).dump(2) + "\n";
+            const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+            if (auto written = connection::writeBytes(file + ".json", bytes); !written)
+                return tl::make_unexpected(written.error());
+            return report.line(file, *frame);
+        }
+    }
+    return file;
+}
+
+}  // namespace caustream::shot
