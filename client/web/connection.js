@@ -1,0 +1,133 @@
+// The socket: hello, numbered requests and their replies, pings, and coming back after a loss. Knows no pictures.
+
+const kSubprotocol = 'caustream.v1';
+const kFirstRetryMs = 250, kLongestRetryMs = 5000;
+const kPingEveryMs = 1000;
+const kSilenceMs = 12000;        // no pong for this long: the server is frozen or the way to it is gone
+const kSessionTaken = 4409, kAuthRequired = 4401;
+
+export class Connection {
+    // handlers: {<op>(message) of every op but ok, error and pong; frame(buffer, recvUs); hello() -> its fields;
+    // refused(error) for errors that answer no request; link(state, detail) with state "open", "retry", "taken" or "auth";
+    // roundTrip(ms)}
+    constructor(url, handlers) {
+        this.url_ = url;
+        this.handlers_ = handlers;
+        this.requests_ = new Map();
+        this.lastId_ = 0;
+        this.retryMs_ = kFirstRetryMs;
+        this.ready = false;
+        addEventListener('online', () => this.connect());
+    }
+
+    connect() {
+        clearTimeout(this.retryTimer_);
+        this.socket_?.close();
+        const socket = new WebSocket(this.url_, kSubprotocol);
+        socket.binaryType = 'arraybuffer';
+        this.socket_ = socket;
+        this.comeBackMs_ = null;
+        this.lastError_ = null;
+        this.heardMs_ = performance.now();
+        socket.onopen = () => this.hello_();
+        socket.onmessage = (event) => socket === this.socket_ && this.receive_(event.data);
+        socket.onclose = (event) => socket === this.socket_ && this.lost_(event.code);
+    }
+
+    send(message) {
+        if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(JSON.stringify(message));
+    }
+
+    sendBinary(buffer) {
+        if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(buffer);
+    }
+
+    // The server's ok, or a rejection that holds its error.
+    request(op, fields = {}) {
+        return new Promise((resolve, reject) => {
+            if (this.socket_?.readyState !== WebSocket.OPEN) {
+                reject({ code: 'lost', message: 'The connection is lost.' });
+                return;
+            }
+            const id = ++this.lastId_;
+            this.requests_.set(id, { resolve, reject });
+            this.send({ op, id, ...fields });
+        });
+    }
+
+    hello_() {
+        this.request('hello', {
+            client: { name: 'caustream-web', version: '1' },
+            caps: ['jpeg', 'png', 'raw', 'f16', 'f32'],
+            max_inflight: 4,
+            ...this.handlers_.hello(),
+        }).catch((error) => this.handlers_.refused(error));
+        this.pingTimer_ = setInterval(() => this.ping_(), kPingEveryMs);
+    }
+
+    ping_() {
+        if (performance.now() - this.heardMs_ > kSilenceMs) this.lost_(0);
+        else if (this.ready) this.send({ op: 'ping', t_us: Math.round(performance.now() * 1000) });
+    }
+
+    receive_(data) {
+        this.heardMs_ = performance.now();
+        if (data instanceof ArrayBuffer) {
+            this.handlers_.frame(data, Math.round(performance.now() * 1000));
+            return;
+        }
+        const message = JSON.parse(data);
+        if (message.op === 'welcome') {
+            this.ready = true;
+            this.retryMs_ = kFirstRetryMs;
+            this.requests_.delete(message.id);
+            this.handlers_.link('open');
+            this.handlers_.welcome(message);
+        } else if (message.op === 'ok' || message.op === 'error') {
+            this.answer_(message);
+        } else if (message.op === 'pong') {
+            this.handlers_.roundTrip(performance.now() - message.t_us / 1000);
+        } else if (message.op === 'goaway') {
+            this.comeBackMs_ = (message.reconnect_ms ?? 0) + Math.random() * (message.jitter_ms ?? 0);
+        } else {
+            this.handlers_[message.op]?.(message);
+        }
+    }
+
+    answer_(message) {
+        const request = this.requests_.get(message.id);
+        this.requests_.delete(message.id);
+        if (message.op === 'error') this.lastError_ = message;
+        if (message.op === 'ok') request?.resolve(message);
+        else if (request) request.reject(message);
+        else this.handlers_.refused(message);
+    }
+
+    lost_(code) {
+        clearInterval(this.pingTimer_);
+        clearTimeout(this.retryTimer_);
+        this.ready = false;
+        const socket = this.socket_;
+        this.socket_ = null;
+        socket?.close();
+        for (const { reject } of this.requests_.values()) reject({ code: 'lost', message: 'The connection is lost.' });
+        this.requests_.clear();
+
+        // Coming back by itself would take the session from the page that just took it, or offer the same wrong token.
+        if (code === kSessionTaken) return this.handlers_.link('taken');
+        if (code === kAuthRequired) return this.handlers_.link('auth');
+        const waitMs = this.comeBackMs_ ?? this.lastError_?.retry_ms ?? this.retryMs_ * (0.75 + 0.5 * Math.random());
+        this.retryMs_ = Math.min(2 * this.retryMs_, kLongestRetryMs);
+        this.handlers_.link('retry', waitMs);
+        this.retryTimer_ = setTimeout(() => this.connect(), waitMs);
+    }
+}
+
+// What an error message says, as one sentence.
+export function sentence(error) {
+    const text = error.message || error.code || 'The server refused.';
+    const end = /[.!?]$/.test(text) ? '' : '.';
+    if (error.field && /^(must|is|has|may)\b/.test(text)) return `${error.field} ${text}${end}`;
+    const start = text.charAt(0).toUpperCase() + text.slice(1);
+    return error.field ? `${start.replace(/\.$/, '')} (${error.field}).` : start + end;
+}

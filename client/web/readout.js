@@ -1,0 +1,72 @@
+// The readings: rates, the server's stage times, its plan, and where the light went.
+
+const byId = (id) => document.getElementById(id);
+const kLedger = [
+    ['deposited', 'Reached a surface'],
+    ['absorbed', 'Absorbed in glass'],
+    ['reflected', 'Reflected away'],
+    ['total_reflection', 'Totally reflected'],
+    ['rejected', 'Found no exact hit'],
+    ['left_map', 'Left the map'],
+    ['no_receiver', 'Met no surface'],
+];
+
+function cell(text, className = '') {
+    const td = document.createElement('td');
+    td.textContent = text;
+    td.className = className;
+    return td;
+}
+
+function row(...cells) {
+    const tr = document.createElement('tr');
+    tr.append(...cells);
+    return tr;
+}
+
+function bar(value, max, label) {
+    const meter = document.createElement('meter');
+    meter.max = Math.max(max, 1e-9);
+    meter.value = value;
+    meter.setAttribute('aria-label', label);
+    const td = cell('', 'bar');
+    td.append(meter);
+    return td;
+}
+
+const milliseconds = (ms) => `${ms < 10 ? ms.toFixed(1) : ms.toFixed(0)} ms`;
+const words = (name) => name.replaceAll('_', ' ');
+
+export function showRates({ fps, roundTripMs, latencyMs }) {
+    byId('fps').textContent = fps ? `${fps} /s` : 'at rest';
+    byId('round-trip').textContent = roundTripMs === null ? '–' : milliseconds(roundTripMs);
+    byId('latency').textContent = latencyMs === null ? '–' : milliseconds(latencyMs);
+}
+
+// stats: the server's message of that name.
+export function showStats(stats) {
+    const stages = [...(stats.stages ?? []), { pass: 'encode', ms: stats.encode_ms ?? 0 }];
+    const longest = Math.max(...stages.map((stage) => stage.ms));
+    byId('stages').tBodies[0].replaceChildren(...stages.map(({ pass, ms }) =>
+        row(cell(words(pass)), bar(ms, longest, `${words(pass)} ${milliseconds(ms)}`), cell(milliseconds(ms), 'number'))));
+
+    const facts = [`Rendered in ${milliseconds(stats.render_ms ?? 0)}`];
+    if (stats.photons) facts.push(`${stats.photons.toLocaleString('en')} photons`);
+    if (stats.window) facts.push(`window ${stats.window}`);
+    if (stats.dropped) facts.push(`${stats.dropped} replaced before sending`);
+    byId('server-line').textContent = [facts.join(', ') + '.', ...(stats.warnings ?? [])].join(' ');
+
+    byId('plan').tBodies[0].replaceChildren(...(stats.plan ?? []).map((entry) => {
+        const tr = row(cell(words(entry.pass)), cell(entry.run ? 'run' : 'skip'), cell(entry.reason));
+        tr.className = entry.run ? 'run' : 'skip';
+        return tr;
+    }));
+    if (stats.ledger) showLedger(stats.ledger);
+}
+
+function showLedger(ledger) {
+    const whole = ledger.on_casters;
+    const share = (flux) => (whole > 0 ? `${((100 * flux) / whole).toFixed(1)} %` : '–');
+    byId('energy').tBodies[0].replaceChildren(...kLedger.map(([key, label]) =>
+        row(cell(label), bar(ledger[key] ?? 0, whole, `${label} ${share(ledger[key] ?? 0)}`), cell(share(ledger[key] ?? 0), 'number'))));
+}
