@@ -89,6 +89,12 @@ Framebuffer makeFramebuffer(std::string_view text, std::initializer_list<GLuint>
     return framebuffer;
 }
 
+VertexArray makeVertexArray() {
+    GLuint name = 0;
+    glCreateVertexArrays(1, &name);
+    return VertexArray(name);
+}
+
 Sampler makeSampler(GLenum filter, GLenum wrap, std::string_view text) {
     GLuint name = 0;
     glCreateSamplers(1, &name);

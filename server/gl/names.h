@@ -79,6 +79,8 @@ class Buffer : public GlName<deleteBuffer> {
 
 // Framebuffer over colour attachments and an optional depth attachment; throws Error when incomplete.
 Framebuffer makeFramebuffer(std::string_view label, std::initializer_list<GLuint> colors, GLuint depth = 0);
+// Empty: draws that need no vertex data need one bound all the same.
+VertexArray makeVertexArray();
 Sampler makeSampler(GLenum filter, GLenum wrap, std::string_view label);
 // Hardware depth comparison (LESS or EQUAL), linear: one fetch is a 2x2 percentage-closer filter.
 Sampler makeShadowSampler(std::string_view label);

@@ -1,0 +1,30 @@
+#include "render/light_uniforms.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
+
+namespace caustream::render {
+
+float radianceUnit(const Lighting& lighting) {
+    const float unit = lighting.referenceIrradiance / glm::pi<float>();
+    return unit > 0.0f && std::isfinite(unit) ? unit : 1.0f;
+}
+
+float irradianceScale(const Lighting& lighting) { return 1.0f / (radianceUnit(lighting) * glm::pi<float>()); }
+
+void setLight(const gl::Uniforms& uniforms, const std::string& name, const scene::Light& light, const glm::vec3& rgb) {
+    const auto at = [&](const char* member) { return name + "." + member; };
+    const bool spot = light.type == scene::LightType::Spot;
+    const float cosInner = std::cos(glm::radians(light.innerConeDeg));
+    const float cosOuter = std::cos(glm::radians(light.outerConeDeg));
+    const float ramp = cosInner - cosOuter;
+    uniforms.set(at("position").c_str(), light.position)
+        .set(at("direction").c_str(), light.direction)
+        .set(at("rgb").c_str(), rgb * light.intensity)
+        .set(at("cosOuter").c_str(), spot ? cosOuter : -3.0f)
+        .set(at("coneScale").c_str(), spot ? (ramp > 1e-6f ? 1.0f / ramp : 0.0f) : 1.0f)
+        .set(at("directional").c_str(), light.type == scene::LightType::Directional);
+}
+
+}  // namespace caustream::render

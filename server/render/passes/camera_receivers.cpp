@@ -1,0 +1,133 @@
+#include "render/passes/camera_receivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <string>
+
+#include "gl/uniforms.h"
+#include "render/light_uniforms.h"
+
+namespace caustream::render {
+
+namespace {
+
+constexpr std::size_t kMaxLights = 8;  // u_lights of the shader
+
+// Texture units, one for each sampler of the shader.
+enum Unit : int { kBaseColor, kShadow, kMap, kOuterMap, kCookie };
+
+std::vector<gl::Flag> flags(bool shadow, bool map, bool texture, bool full) {
+    return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}};
+}
+
+// Whether a material needs more than Lambert under one light: a highlight. Roughness 1 has none worth its price.
+bool glossy(const scene::Material& material) { return material.roughness < 0.95f || material.metallic > 0.0f; }
+
+// The square around the outer cone, which a cookie spans; upright in the world.
+View cookieView(const scene::Light& light) {
+    View view;
+    view.worldToView = lookAlong(light.position, light.direction, glm::vec3(0, 1, 0));
+    view.halfExtent = glm::vec2(std::tan(glm::radians(std::min(light.outerConeDeg, 89.0f))));
+    return view;
+}
+
+}  // namespace
+
+CameraReceivers::CameraReceivers(gl::ShaderLibrary& shaders)
+    : shaders_(shaders),
+      trilinear_(gl::makeSampler(GL_LINEAR_MIPMAP_LINEAR, GL_REPEAT, "base colour")),
+      linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "linear")),
+      shadow_(gl::makeShadowSampler("shadow")) {}
+
+void CameraReceivers::setFrame(const Inputs& in, GLuint program) const {
+    const Lighting& lighting = in.lighting;
+    const gl::Uniforms uniforms(program);
+    const float perUnit = 1.0f / radianceUnit(lighting);
+    uniforms.set("u_worldToClip", in.view.worldToClip())
+        .set("u_eye", in.view.position())
+        .set("u_towardsEye", -in.view.forward())
+        .set("u_cameraPerspective", in.view.perspective)
+        .set("u_environment", lighting.environmentRadiance * perUnit);
+    setView(uniforms, "u_shadowView", lighting.shadowView);
+    setView(uniforms, "u_mapView", lighting.mapView);
+    setView(uniforms, "u_outerView", lighting.outerView);
+    uniforms.set("u_shadowDepth", kShadow).set("u_map", kMap).set("u_outerMap", kOuterMap).set("u_cookie", kCookie);
+    uniforms.set("u_baseColorTexture", kBaseColor);
+
+    const std::size_t count = std::min(lighting.lights.size(), kMaxLights);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 rgb = i == 0 ? lighting.keyRgb : lighting.rgb[i];
+        setLight(uniforms, "u_lights[" + std::to_string(i) + "]", lighting.lights[i], rgb * irradianceScale(lighting));
+    }
+    if (count == 0) uniforms.set("u_lights[0].rgb", glm::vec3(0.0f));
+    uniforms.set("u_lightCount", static_cast<int>(count));
+    const bool hasCookie = count > 0 && lighting.lights[0].cookie >= 0;
+    uniforms.set("u_hasCookie", hasCookie);
+    if (hasCookie) setView(uniforms, "u_cookieView", cookieView(lighting.lights[0]));
+}
+
+void CameraReceivers::setMaterial(const Inputs& in, const scene::Material& material, GLuint program) const {
+    const gl::Uniforms uniforms(program);
+    uniforms.set("u_baseColor", glm::vec3(material.baseColor))
+        .set("u_emissive", material.emissive / radianceUnit(in.lighting))
+        .set("u_roughness", material.roughness)
+        .set("u_metallic", material.metallic);
+    if (material.baseColorTexture >= 0) glBindTextureUnit(kBaseColor, in.scene.texture(material.baseColorTexture));
+}
+
+void CameraReceivers::run(const Inputs& in, const Outputs& out) {
+    out.color.ensure(in.width, in.height, GL_RGBA16F, "receivers' colour");
+    out.depth.ensure(in.width, in.height, GL_DEPTH_COMPONENT32F, "receivers' depth");
+    const gl::Framebuffer target = gl::makeFramebuffer("camera_receivers", {out.color.get()}, out.depth.get());
+    const Lighting& lighting = in.lighting;
+
+    const glm::vec4 background(lighting.environmentRadiance / radianceUnit(lighting), 1.0f);
+    const float nothing = 0.0f;
+    glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+    glViewport(0, 0, in.width, in.height);
+    glClearNamedFramebufferfv(target.get(), GL_COLOR, 0, &background[0]);
+    glClearNamedFramebufferfv(target.get(), GL_DEPTH, 0, &nothing);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+
+    // What every variant shares: images and samplers.
+    const bool map = lighting.hasMap, hasCookie = !lighting.lights.empty() && lighting.lights[0].cookie >= 0;
+    if (lighting.hasShadow) glBindTextureUnit(kShadow, lighting.shadowDepth);
+    if (map) {
+        glBindTextureUnit(kMap, lighting.map);
+        glBindTextureUnit(kOuterMap, lighting.outerMap);
+    }
+    if (hasCookie) glBindTextureUnit(kCookie, in.scene.texture(lighting.lights[0].cookie));
+    glBindSampler(kBaseColor, trilinear_.get());
+    glBindSampler(kShadow, shadow_.get());
+    for (const int unit : {kMap, kOuterMap, kCookie}) glBindSampler(unit, linear_.get());
+
+    // One draw per receiver; a variant's frame uniforms are set when it is first used.
+    in.scene.bind();
+    std::vector<GLuint> ready;
+    for (const scene::Object& object : in.scene.geometry().objects) {
+        const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
+        if (material.caster) continue;
+        const bool full = hasCookie || lighting.lights.size() > 1 || glossy(material);
+        const GLuint program = shaders_.program(
+            "camera_receivers", flags(lighting.hasShadow, map, material.baseColorTexture >= 0, full));
+        if (std::find(ready.begin(), ready.end(), program) == ready.end()) {
+            setFrame(in, program);
+            ready.push_back(program);
+        }
+        setMaterial(in, material, program);
+        glUseProgram(program);
+        in.scene.draw(object);
+    }
+    glDisable(GL_DEPTH_TEST);
+    for (const int unit : {kBaseColor, kShadow, kMap, kOuterMap, kCookie}) glBindSampler(unit, 0);
+}
+
+void CameraReceivers::warmUp() {
+    for (int bits = 0; bits < 16; ++bits) {
+        shaders_.program("camera_receivers", flags(bits & 1, bits & 2, bits & 4, bits & 8));
+    }
+}
+
+}  // namespace caustream::render

@@ -1,0 +1,115 @@
+#include "render/passes/dispersive_refraction.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "gl/uniforms.h"
+#include "render/light_uniforms.h"
+
+namespace caustream::render {
+
+namespace {
+
+constexpr int kSurroundings = 8;  // texels a side, as the shader says
+enum Unit : int { kFront, kBack, kReceiversDepth, kBackground, kSurroundingsUnit };
+
+std::vector<gl::Flag> flags(bool thin) { return {{"THIN", thin}}; }
+
+void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& glass) {
+    std::vector<glm::vec4> wavelengths;
+    std::vector<float> absorption;
+    for (const auto& wavelength : glass.wavelengths) {
+        wavelengths.emplace_back(wavelength.rgb, wavelength.index);
+        absorption.push_back(wavelength.absorptionPerM);
+    }
+    uniforms.set("u_count", static_cast<int>(wavelengths.size()))
+        .set("u_wavelengths", std::span<const glm::vec4>(wavelengths))
+        .set("u_absorption", std::span<const float>(absorption));
+}
+
+// The key light in the camera's space.
+void setKey(const gl::Uniforms& uniforms, const Lighting& lighting, const View& view) {
+    if (lighting.lights.empty()) {
+        uniforms.set("u_key.rgb", glm::vec3(0.0f));
+        return;
+    }
+    scene::Light key = lighting.lights[0];
+    key.position = view.toView(key.position);
+    key.direction = glm::mat3(view.worldToView) * key.direction;
+    setLight(uniforms, "u_key", key, lighting.keyRgb * irradianceScale(lighting));
+}
+
+}  // namespace
+
+DispersiveRefraction::DispersiveRefraction(gl::ShaderLibrary& shaders)
+    : shaders_(shaders),
+      linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "linear")),
+      vertexArray_(gl::makeVertexArray()) {}
+
+void DispersiveRefraction::begin(const gl::Texture& frame) {
+    background_.ensure(frame.width(), frame.height(), GL_RGBA16F, "background");
+    glCopyImageSubData(frame.get(), GL_TEXTURE_2D, 0, 0, 0, 0, background_.get(), GL_TEXTURE_2D, 0, 0, 0, 0,
+                       frame.width(), frame.height(), 1);
+
+    surroundings_.ensure(kSurroundings, kSurroundings, GL_RGBA16F, "surroundings");
+    const gl::Framebuffer target = gl::makeFramebuffer("surroundings", {surroundings_.get()});
+    glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+    glViewport(0, 0, kSurroundings, kSurroundings);
+    const GLuint program = shaders_.program("surroundings");
+    glUseProgram(program);
+    gl::Uniforms(program).set("u_background", 0);
+    glBindTextureUnit(0, background_.get());
+    glBindVertexArray(vertexArray_.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::Texture& frame) {
+    const int width = frame.width(), height = frame.height();
+    const gl::Framebuffer target = gl::makeFramebuffer("dispersive_refraction", {frame.get()});
+    glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+    glViewport(0, 0, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(in.box.x, in.box.y, in.box.width, in.box.height);
+
+    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled));
+    glUseProgram(program);
+    const gl::Uniforms uniforms(program);
+    setView(uniforms, "u_view", in.view);
+    // A bilinear lookup this far inside the box reads nothing beyond it.
+    const float inset = 0.75f;
+    uniforms.set("u_box", glm::vec4((float(in.box.x) + inset) / float(width), (float(in.box.y) + inset) / float(height),
+                                    (float(in.box.x + in.box.width) - inset) / float(width),
+                                    (float(in.box.y + in.box.height) - inset) / float(height)));
+    uniforms.set("u_front", kFront)
+        .set("u_back", kBack)
+        .set("u_receiversDepth", kReceiversDepth)
+        .set("u_background", kBackground)
+        .set("u_surroundings", kSurroundingsUnit)
+        .set("u_backSteps", settings.backSteps)
+        .set("u_receiverSteps", settings.receiverSteps)
+        .set("u_diameter", glm::length(in.bounds.max - in.bounds.min))
+        .set("u_tint", in.glass.tint);
+    if (!in.glass.thinWalled) setGlass(uniforms, in.glass);
+    setKey(uniforms, in.lighting, in.view);
+
+    const GLuint textures[] = {in.front.get(), in.back.get(), in.receiversDepth.get(), background_.get(),
+                               surroundings_.get()};
+    glBindTextures(0, 5, textures);
+    for (const int unit : {kReceiversDepth, kBackground, kSurroundingsUnit}) glBindSampler(unit, linear_.get());
+    glBindVertexArray(vertexArray_.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    for (const int unit : {kReceiversDepth, kBackground, kSurroundingsUnit}) glBindSampler(unit, 0);
+    glDisable(GL_SCISSOR_TEST);
+
+    // The next caster sees this one.
+    glCopyImageSubData(frame.get(), GL_TEXTURE_2D, 0, in.box.x, in.box.y, 0, background_.get(), GL_TEXTURE_2D, 0,
+                       in.box.x, in.box.y, 0, in.box.width, in.box.height, 1);
+}
+
+void DispersiveRefraction::warmUp() {
+    shaders_.program("surroundings");
+    shaders_.program("dispersive_refraction", flags(false));
+    shaders_.program("dispersive_refraction", flags(true));
+}
+
+}  // namespace caustream::render

@@ -1,0 +1,37 @@
+#include "render/passes/present.h"
+
+#include "gl/uniforms.h"
+
+namespace caustream::render {
+
+namespace {
+constexpr int kModes = 6;
+
+std::vector<gl::Flag> flags(int mode, bool downsample) { return {{"MODE", mode}, {"DOWNSAMPLE", downsample}}; }
+}  // namespace
+
+void Present::run(const Inputs& in, int width, int height, GLenum format, const Outputs& out) {
+    out.image.ensure(width, height, format, "presented image");
+    const gl::Framebuffer target = gl::makeFramebuffer("present", {out.image.get()});
+    glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+    glViewport(0, 0, width, height);
+    const GLuint program = shaders_.program("present", flags(static_cast<int>(in.mode), in.downsample));
+    glUseProgram(program);
+    gl::Uniforms(program)
+        .set("u_image", 0)
+        .set("u_scale", in.scale)
+        .set("u_height", height)
+        .set("u_depthImage", in.depthImage);
+    glBindTextureUnit(0, in.image);
+    glBindVertexArray(vertexArray_.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Present::warmUp() {
+    for (int mode = 0; mode < kModes; ++mode) {
+        shaders_.program("present", flags(mode, false));
+        shaders_.program("present", flags(mode, true));
+    }
+}
+
+}  // namespace caustream::render

@@ -1,0 +1,63 @@
+// Rays into the camera's own picture of the receivers: what one sees along a ray that left a caster.
+#include "common/view.glsl"
+uniform View u_view;
+uniform sampler2D u_background;       // linear radiance
+uniform sampler2D u_receiversDepth;   // layer value
+uniform sampler2D u_surroundings;     // 8 x 8 means of the background
+uniform int u_receiverSteps;
+
+// A plausible, bounded answer for a ray that meets nothing the picture shows: the picture's colours, blurred, with
+// straight ahead in the middle and sideways at the border; behind the eye mirrored.
+vec3 surroundings(vec3 dir) { return textureLod(u_surroundings, 0.5 + 0.5 * dir.xy / (1.0 + abs(dir.z)), 0.0).rgb; }
+
+// uv and layer value: linear along a ray in the image, 0 at infinity.
+vec3 toImage(vec3 pos) {
+    float layer = u_view.perspective ? u_view.near / max(-pos.z, 1e-20)
+                                     : 1.0 - (-pos.z - u_view.near) / (u_view.far - u_view.near);
+    return vec3(viewToUv(u_view, pos), layer);
+}
+
+// How far a point of the image lies behind (> 0) the receivers there, in layer values.
+float behind(vec3 at) { return textureLod(u_receiversDepth, at.xy, 0.0).r - at.z; }
+
+// Where the ray leaves the picture's frustum; `endless` when it never does.
+vec3 frustumEnd(vec3 pos, vec3 dir, out bool endless) {
+    float z = u_view.perspective ? -pos.z : 1.0, dz = u_view.perspective ? -dir.z : 0.0;
+    vec4 room = vec4(u_view.halfExtent * z - pos.xy, u_view.halfExtent * z + pos.xy);
+    vec4 change = vec4(u_view.halfExtent * dz - dir.xy, u_view.halfExtent * dz + dir.xy);
+    float length_ = 1e30;
+    for (int i = 0; i < 4; ++i) length_ = change[i] < 0.0 ? min(length_, max(room[i], 0.0) / -change[i]) : length_;
+    float toNear = -pos.z - u_view.near, toFar = u_view.far + pos.z;
+    if (dir.z > 0.0) length_ = min(length_, max(toNear, 0.0) / dir.z);
+    if (!u_view.perspective && dir.z < 0.0) length_ = min(length_, max(toFar, 0.0) / -dir.z);
+    endless = length_ > 1e29;
+    return endless ? vec3(viewToUv(u_view, dir), 0.0) : toImage(pos + length_ * dir);
+}
+
+// Radiance along the ray: bracketed secant (Illinois) on behind(), which is linear along a ray over any plane.
+vec3 seenAlong(vec3 pos, vec3 dir) {
+    bool endless;
+    vec3 a = toImage(pos), b = frustumEnd(pos, dir, endless);
+    float fa = behind(a), fb = behind(b);
+    bool leaves = fb < 0.0 && !endless;
+    bool inside = all(lessThanEqual(abs(a.xy - 0.5), vec2(0.5)));
+    vec3 hit = fa >= 0.0 ? a : b;
+    float side = 0.0;
+    bool search = fa < 0.0 && fb > 0.0;
+    for (int i = 0; i < u_receiverSteps && search; ++i) {
+        hit = mix(a, b, fa / (fa - fb));
+        float f = behind(hit);
+        if (f < 0.0) {
+            a = hit;
+            fa = f;
+            fb *= side < 0.0 ? 0.5 : 1.0;
+            side = -1.0;
+        } else {
+            b = hit;
+            fb = f;
+            fa *= side > 0.0 ? 0.5 : 1.0;
+            side = 1.0;
+        }
+    }
+    return !inside || leaves ? surroundings(dir) : textureLod(u_background, hit.xy, 0.0).rgb;
+}
