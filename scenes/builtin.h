@@ -1,0 +1,13 @@
+// The scenes that come with the server, each in its setting.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace caustream::scenes {
+
+// GLB of "sphere", "ring", "gem", "bunny", "glass" or "prism". Throws std::runtime_error for another name, and for the
+// bunny when its model is not on this machine.
+std::vector<std::uint8_t> makeBuiltin(const std::string& name);
+
+}  // namespace caustream::scenes

@@ -1,0 +1,43 @@
+// A triangle mesh while it is being made. Metres, counter-clockwise seen from outside.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+namespace caustream::scenes {
+
+struct Mesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;  // empty: flat, as glTF says
+    std::vector<glm::vec2> uvs;      // empty: none
+    std::vector<std::uint32_t> indices;
+};
+
+// Normals as the mean of the faces around each vertex, weighted by their angle there (Thuermer & Wuethrich 1998).
+void smoothNormals(Mesh& mesh);
+
+void append(Mesh& mesh, const Mesh& other);
+void transform(Mesh& mesh, const glm::mat4& matrix);
+
+// Unit icosahedron subdivided `levels` times: 20 * 4^levels faces. Vertices on the sphere, smooth normals.
+Mesh icosphere(int levels, const glm::dvec3& centre, double radius);
+
+// `around` x `across` quads; `axis` y. Smooth normals.
+Mesh torus(double majorRadius, double minorRadius, int around, int across);
+
+// Corners counter-clockwise seen from the side the normal points to; uv 0..1 with v down.
+Mesh quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);
+Mesh box(const glm::vec3& min, const glm::vec3& max);
+
+// The solid n . x <= d of all planes (x, y, z of each: unit outward normal; w: d), flat faces with unshared corners.
+// A plane that cuts nothing off has no face. The solid must be bounded.
+Mesh convexPolyhedron(std::span<const glm::dvec4> planes);
+
+// Volume inside the surface by the divergence theorem, m^3; negative when it is inside out.
+double signedVolume(const Mesh& mesh);
+
+}  // namespace caustream::scenes

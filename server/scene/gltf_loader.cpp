@@ -1,0 +1,337 @@
+#include "scene/gltf_loader.h"
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <map>
+
+#include "scene/fallbacks.h"
+#include "scene/glb_container.h"
+#include "scene/gltf_file.h"
+#include "scene/gltf_lights.h"
+#include "scene/gltf_materials.h"
+#include "scene/mesh_cleaning.h"
+#include "scene/primitive_reader.h"
+
+namespace caustream::scene {
+
+namespace {
+
+constexpr int kMaxNodeDepth = 256;
+constexpr std::size_t kMaxNodes = 100'000;  // visited: a node may not be reached twice, but the file may have many
+
+tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+
+using Status = tl::expected<void, LoadError>;
+
+glm::dmat4 localMatrix(const tinygltf::Node& node) {
+    if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+    glm::dvec3 translation(0.0), scale(1.0);
+    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
+    if (node.translation.size() == 3) translation = glm::make_vec3(node.translation.data());
+    if (node.scale.size() == 3) scale = glm::make_vec3(node.scale.data());
+    if (node.rotation.size() == 4)
+        rotation = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    if (glm::length(rotation) > 0.0) rotation = glm::normalize(rotation);
+    glm::dmat4 matrix = glm::mat4_cast(rotation);
+    for (int k = 0; k < 3; ++k) matrix[k] *= scale[k];
+    matrix[3] = glm::dvec4(translation, 1.0);
+    return matrix;
+}
+
+bool finite(const glm::dmat4& m) {
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite(m[c][r])) return false;
+    return true;
+}
+
+class Loader {
+   public:
+    Loader(GltfFile file, const LoadLimits& limits)
+        : file_(std::move(file)), model_(file_.model), limits_(limits), textures_(file_, limits.texels),
+          budget_(6 * limits.triangles) {}
+
+    tl::expected<Scene, LoadError> load(const std::string& name);
+
+   private:
+    struct PlacedNode {
+        int index;
+        glm::dmat4 world;
+    };
+
+    Status readMaterials();
+    Status placeNodes();
+    Status readMeshes();
+    Status readPart(const tinygltf::Mesh& mesh, const PlacedNode& node, std::map<int, Part>& parts);
+    Status addObject(std::string name, int material, Part part);
+    Status readLights();
+    void readCameras();
+    void addMissing();
+    Status readSceneExtras();
+    int defaultMaterial();
+    void append(Object object, const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
+    const Bounds& subject() const { return geometry_->casterBounds.empty() ? geometry_->bounds : geometry_->casterBounds; }
+    void warn(std::string sentence) { scene_.warnings.push_back(std::move(sentence)); }
+
+    GltfFile file_;
+    const tinygltf::Model& model_;
+    LoadLimits limits_;
+    TextureTable textures_;
+    std::size_t budget_;  // vertices and indices that may still be read
+    NameTable materialNames_, lightNames_, cameraNames_;
+    std::vector<PlacedNode> nodes_;
+    std::shared_ptr<Geometry> geometry_ = std::make_shared<Geometry>();
+    Scene scene_;
+    int defaultMaterial_ = -1;
+};
+
+tl::expected<Scene, LoadError> Loader::load(const std::string& name) {
+    scene_.name = name;
+    if (auto ok = readMaterials(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = placeNodes(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = readMeshes(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = readLights(); !ok) return tl::unexpected(ok.error());
+    readCameras();
+    addMissing();
+    if (auto ok = readSceneExtras(); !ok) return tl::unexpected(ok.error());
+    geometry_->textures = textures_.take();
+    scene_.geometry = geometry_;
+    return std::move(scene_);
+}
+
+Status Loader::readMaterials() {
+    for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+        const std::string name = materialNames_.unique(model_.materials[i].name, "material", i);
+        auto material = readMaterial(model_.materials[i], textures_, name, scene_.warnings);
+        if (!material) return tl::unexpected(material.error());
+        scene_.materials.push_back(std::move(*material));
+    }
+    return {};
+}
+
+// World matrices of every node of the default scene, parents before children.
+Status Loader::placeNodes() {
+    std::vector<int> roots;
+    if (!model_.scenes.empty()) {
+        const int chosen = model_.defaultScene < 0 ? 0 : model_.defaultScene;
+        if (static_cast<std::size_t>(chosen) >= model_.scenes.size())
+            return fail("the file's scene " + std::to_string(chosen) + " is not there");
+        roots = model_.scenes[chosen].nodes;
+    } else {
+        for (std::size_t i = 0; i < model_.nodes.size(); ++i) roots.push_back(static_cast<int>(i));
+    }
+    struct Pending {
+        int node, depth;
+        glm::dmat4 parent;
+    };
+    std::vector<Pending> pending;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, 0, glm::dmat4(1.0)});
+    std::vector<bool> reached(model_.nodes.size(), false);
+    while (!pending.empty()) {
+        const Pending next = pending.back();
+        pending.pop_back();
+        const std::string what = "node " + std::to_string(next.node);
+        if (next.node < 0 || static_cast<std::size_t>(next.node) >= model_.nodes.size()) return fail(what + " is not there");
+        if (reached[next.node] && !model_.scenes.empty()) return fail(what + " has two parents or is its own ancestor");
+        if (next.depth > kMaxNodeDepth || nodes_.size() >= kMaxNodes) return fail("the file has too many nodes");
+        reached[next.node] = true;
+        const tinygltf::Node& node = model_.nodes[next.node];
+        const glm::dmat4 world = next.parent * localMatrix(node);
+        if (!finite(world)) return fail(what + " has a transform with NaN or infinity");
+        nodes_.push_back({next.node, world});
+        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+            pending.push_back({*child, next.depth + 1, world});
+    }
+    return {};
+}
+
+Status Loader::readMeshes() {
+    for (const PlacedNode& placed : nodes_) {
+        const tinygltf::Node& node = model_.nodes[placed.index];
+        if (node.mesh < 0) continue;
+        if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
+            return fail("node " + std::to_string(placed.index) + " names mesh " + std::to_string(node.mesh) +
+                        ", which is not there");
+        const tinygltf::Mesh& mesh = model_.meshes[node.mesh];
+        std::map<int, Part> parts;  // by material
+        if (auto ok = readPart(mesh, placed, parts); !ok) return ok;
+        const std::string name = !node.name.empty() ? node.name : mesh.name;
+        for (auto& [material, part] : parts)
+            if (auto ok = addObject(name, material, std::move(part)); !ok) return ok;
+    }
+    if (geometry_->objects.empty()) return fail("the file has no mesh with triangles in its scene");
+    return {};
+}
+
+Status Loader::readPart(const tinygltf::Mesh& mesh, const PlacedNode& placed, std::map<int, Part>& parts) {
+    std::size_t withoutArea = 0;
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        const tinygltf::Primitive& primitive = mesh.primitives[i];
+        const std::string what = "mesh \"" + mesh.name + "\" primitive " + std::to_string(i);
+        if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) >= model_.materials.size())
+            return fail(what + " names material " + std::to_string(primitive.material) + ", which is not there");
+        const int material = primitive.material >= 0 ? primitive.material : defaultMaterial();
+        const int uvSet = primitive.material >= 0
+                              ? model_.materials[primitive.material].pbrMetallicRoughness.baseColorTexture.texCoord
+                              : 0;
+        const auto soup = readPrimitive(model_, primitive, uvSet, budget_, what);
+        if (!soup) return tl::unexpected(soup.error());
+        if (soup->indices.empty()) {
+            warn(what + " has no triangles and is not shown");
+            continue;
+        }
+        bool isFinite = true;
+        withoutArea += bake(*soup, placed.world, parts[material], isFinite);
+        if (!isFinite) return fail(what + " leaves the range of 32-bit numbers when its node places it");
+    }
+    if (withoutArea > 0)
+        warn("mesh \"" + mesh.name + "\": " + std::to_string(withoutArea) + " triangles without area were left out");
+    return {};
+}
+
+Status Loader::addObject(std::string name, int material, Part part) {
+    const bool caster = scene_.materials[material].caster;
+    const std::string what = "\"" + name + "\"";
+    if (caster) {
+        if (const std::size_t dropped = dropDuplicates(part); dropped > 0)
+            warn(what + ": " + std::to_string(dropped) + " triangles that are there twice were left out");
+        const Topology topology = examine(part);
+        if (topology.crowdedEdges > 0)
+            warn(what + " has " + std::to_string(topology.crowdedEdges) +
+                 " edges of more than two triangles; light may pass wrongly there");
+        if (topology.openEdges > 0 && !scene_.materials[material].thinWalled)
+            warn(what + " is not closed; light that meets the hole is lost");
+        if (topology.closed && topology.volume < 0.0) {
+            turnInsideOut(part);
+            warn(what + " was inside out and has been turned");
+        }
+    }
+    if (part.indices.empty()) return {};
+    const std::size_t triangles = (geometry_->indices.size() + part.indices.size()) / 3;
+    if (triangles > limits_.triangles)
+        return fail("the file has more than " + std::to_string(limits_.triangles) + " triangles");
+
+    Object object;
+    object.name = std::move(name);
+    object.material = material;
+    append(std::move(object), part.vertices, part.indices);
+    int casters = 0;
+    for (const Object& o : geometry_->objects) casters += scene_.materials[o.material].caster;
+    if (casters > limits_.casters)
+        return fail("the file has more than " + std::to_string(limits_.casters) +
+                    " transmissive objects; join those of one material");
+    return {};
+}
+
+void Loader::append(Object object, const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices) {
+    const auto base = static_cast<std::uint32_t>(geometry_->vertices.size());
+    object.firstIndex = static_cast<std::uint32_t>(geometry_->indices.size());
+    object.indexCount = static_cast<std::uint32_t>(indices.size());
+    geometry_->vertices.insert(geometry_->vertices.end(), vertices.begin(), vertices.end());
+    for (std::uint32_t index : indices) {
+        geometry_->indices.push_back(base + index);
+        object.bounds.add(vertices[index].position);
+    }
+    geometry_->bounds.add(object.bounds);
+    if (scene_.materials[object.material].caster) geometry_->casterBounds.add(object.bounds);
+    geometry_->objects.push_back(std::move(object));
+}
+
+int Loader::defaultMaterial() {
+    if (defaultMaterial_ < 0) {
+        Material material;
+        material.name = materialNames_.unique("", "material", scene_.materials.size());
+        defaultMaterial_ = static_cast<int>(scene_.materials.size());
+        scene_.materials.push_back(std::move(material));
+    }
+    return defaultMaterial_;
+}
+
+Status Loader::readLights() {
+    for (const PlacedNode& placed : nodes_) {
+        const auto* link = extension(model_.nodes[placed.index].extensions, "KHR_lights_punctual");
+        if (!link) continue;
+        const double index = numberOr(member(*link, "light"), -1.0);
+        if (!(index >= 0.0 && index < static_cast<double>(model_.lights.size())))
+            return fail("node " + std::to_string(placed.index) + " names a light that is not there");
+        const tinygltf::Light& source = model_.lights[static_cast<std::size_t>(index)];
+        const std::string name = lightNames_.unique(source.name, "light", scene_.lights.size());
+        auto light = readLight(source, placed.world, textures_, name);
+        if (!light) return tl::unexpected(light.error());
+        if (light->type == LightType::Point)
+            if (const glm::vec3 away = subject().centre() - light->position; glm::length(away) > 0.0f)
+                light->direction = glm::normalize(away);
+        scene_.lights.push_back(std::move(*light));
+    }
+    return {};
+}
+
+void Loader::readCameras() {
+    for (const PlacedNode& placed : nodes_) {
+        const tinygltf::Node& node = model_.nodes[placed.index];
+        if (node.camera < 0 || static_cast<std::size_t>(node.camera) >= model_.cameras.size()) continue;
+        const tinygltf::Camera& source = model_.cameras[node.camera];
+        const std::string name = cameraNames_.unique(source.name, "camera", scene_.cameras.size());
+        scene_.cameras.push_back(readCamera(source, node, placed.world, subject(), name, scene_.warnings));
+    }
+}
+
+void Loader::addMissing() {
+    const Bounds about = subject();
+    bool receiver = false;
+    for (const Object& object : geometry_->objects) receiver = receiver || !scene_.materials[object.material].caster;
+    if (!receiver) {
+        Object floor;
+        floor.name = "floor";
+        Material material;
+        material.name = materialNames_.unique("floor", "floor", scene_.materials.size());
+        material.baseColor = glm::vec4(0.7f, 0.7f, 0.7f, 1.0f);
+        floor.material = static_cast<int>(scene_.materials.size());
+        scene_.materials.push_back(std::move(material));
+        append(std::move(floor), placeFloor(about), {0, 1, 2, 0, 2, 3});
+        warn("the file has nothing for light to land on; a floor was placed");
+    }
+    if (geometry_->casterBounds.empty()) warn("nothing in the file is transmissive, so there is no caustic");
+    if (scene_.lights.empty()) {
+        scene_.lights.push_back(placeLight(about, geometry_->bounds));
+        warn("the file has no light; one was placed above");
+    }
+    if (scene_.cameras.empty()) {
+        scene_.cameras.push_back(placeCamera(about));
+        warn("the file has no camera; one was placed in front");
+    }
+}
+
+Status Loader::readSceneExtras() {
+    if (model_.scenes.empty()) return {};
+    const int chosen = model_.defaultScene < 0 ? 0 : model_.defaultScene;
+    const tinygltf::Value* own = member(model_.scenes[chosen].extras, "caustream");
+    if (!own) return {};
+    if (const tinygltf::Value* value = member(*own, "environment")) {
+        const std::vector<double> color = numbers(value);
+        if (color.size() != 3 || glm::min(glm::min(color[0], color[1]), color[2]) < 0.0)
+            return fail("the scene's environment must be [r, g, b], none negative");
+        scene_.environmentColor = glm::vec3(color[0], color[1], color[2]);
+    }
+    if (const tinygltf::Value* value = member(*own, "outside_index")) {
+        const double index = numberOr(value, 0.0);
+        if (!(index >= 1.0 && index <= 3.0)) return fail("the scene's outside_index must be within 1 to 3");
+        scene_.outsideIndex = index;
+    }
+    return {};
+}
+
+}  // namespace
+
+tl::expected<Scene, LoadError> loadGlb(std::span<const std::byte> glb, const std::string& name,
+                                       const LoadLimits& limits) {
+    if (auto ok = checkContainer(glb, limits); !ok) return tl::unexpected(ok.error());
+    auto file = parseGltf(glb);
+    if (!file) return tl::unexpected(file.error());
+    return Loader(std::move(*file), limits).load(name);
+}
+
+}  // namespace caustream::scene
