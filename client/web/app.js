@@ -17,6 +17,7 @@ const kSoftwarePixels = 300_000;    // what a server without a GPU draws fast en
 const kFallbackLimits = { frame_min_side: 16, frame_max_side: 4096, frame_pixels: 8_300_000 };
 
 let welcome = null, lightMode = false, roundTripMs = null;
+let stale = false;    // the panel shows an older document
 
 const connection = new Connection(socketUrl(), {
     hello: () => ({ ...session.resumption(), ...(sessionStorage.token ? { token: sessionStorage.token } : {}) }),
@@ -26,13 +27,13 @@ const connection = new Connection(socketUrl(), {
     'stream.info': (info) => panel.streamInfo(info),
     'asset.credit': (message) => files.credit(message),
     stats: (stats) => { showStats(stats); panel.exposure(stats.exposure_ev ?? 0); },
-    status: (message) => (message.level === 'info' ? status(message.message) : problem(message.message)),
+    status: ({ level, message }) => (level === 'info' ? status(message || connectedText()) : problem(message)),
     refused: (error) => problem(sentence(error)),
     roundTrip: (ms) => (roundTripMs = roundTripMs === null ? ms : 0.7 * roundTripMs + 0.3 * ms),
     link: (state, waitMs) => showLink(state, waitMs),
 });
 const session = new Session(connection, {
-    changed: () => { panel.refresh(); showLamp(); },
+    changed: () => (stale = true),
     refused: (error) => problem(sentence(error)),
 });
 const view = new View(canvas, {
@@ -54,7 +55,7 @@ async function start(message) {
     files.limits = message.limits;
     view.reset();
     panel.welcome(message);
-    status(`Connected: ${message.gpu}`);
+    status(connectedText());
     try {
         await files.restore(message.missing_assets ?? []);
         await session.replay(message);
@@ -75,6 +76,10 @@ function showLink(state, waitMs) {
     if (state === 'retry') status(waitMs < 400 ? 'Reconnecting' : `No connection; trying again in ${(waitMs / 1000).toFixed(1)} s`);
     if (state === 'taken') problem('Another page has taken this session over. Reload to start a new one.');
     if (state === 'auth') byId('token').focus();
+}
+
+function connectedText() {
+    return `Connected: ${welcome.gpu}`;
 }
 
 function status(text) {
@@ -183,6 +188,11 @@ document.addEventListener('visibilitychange', () => {
 function everyFrame() {
     session.sendPose(performance.now());
     view.paint();
+    if (stale) {
+        stale = false;
+        panel.refresh();
+        showLamp();
+    }
     requestAnimationFrame(everyFrame);
 }
 requestAnimationFrame(everyFrame);

@@ -116,7 +116,7 @@ export class Panel {
     // Every control from the document.
     refresh() {
         const shown = this.session_.shown;
-        const scenes = this.welcome_.scenes.map((name) => [JSON.stringify(['builtin', name]), name]);
+        const scenes = this.welcome_.scenes.map((name) => [JSON.stringify(['builtin', name]), name.charAt(0).toUpperCase() + name.slice(1)]);
         for (const [sha256, name] of this.uploaded_) scenes.push([JSON.stringify(['asset', sha256]), name]);
         fill(byId('scene'), scenes, JSON.stringify(shown.scene));
 

@@ -18,6 +18,12 @@ export function mergePatch(target, patch, keepNulls = false) {
     return merged;
 }
 
+// A resolved document with a patch on it. What the patch takes back ("as the file says") stays as it was until the
+// server's next state message tells what the file says.
+function overlay(resolved, patch) {
+    return mergePatch(resolved, Object.fromEntries(Object.entries(patch).filter(([, value]) => value !== null)));
+}
+
 export class Session {
     // changed() after the shown document changed; refused(error) when the server would not have a change.
     constructor(connection, { changed, refused }) {
@@ -37,8 +43,8 @@ export class Session {
 
     // The document as the user should see it: the server's, with what is on its way to it.
     get shown() {
-        const withUnderWay = this.underWay_ ? mergePatch(this.resolved_, this.underWay_) : this.resolved_;
-        return this.pending_ ? mergePatch(withUnderWay, this.pending_) : withUnderWay;
+        const withUnderWay = overlay(this.resolved_, this.underWay_ ?? {});
+        return overlay(withUnderWay, this.pending_ ?? {});
     }
 
     // From the server's state message.
@@ -49,7 +55,13 @@ export class Session {
             const pivots = Object.entries(state.lights ?? {}).map(([name, light]) => [name, lightPivot(light, this.centre_())]);
             this.home = { sceneKey, camera: state.camera, lights: state.lights, pivots: Object.fromEntries(pivots) };
         }
-        this.resolved_ = this.pose_ ? mergePatch(state, this.pose_) : state;
+        this.resolved_ = overlay(state, this.pose_ ?? {});
+        // A drag may have outlived its scene: a name that is gone would make the server refuse the whole replay.
+        for (const group of ['lights', 'materials']) {
+            for (const name of Object.keys(this.wishes[group] ?? {})) {
+                if (!state[group]?.[name]) delete this.wishes[group][name];
+            }
+        }
         this.changed_();
     }
 
@@ -108,7 +120,7 @@ export class Session {
 
     keep_(patch) {
         this.wishes = mergePatch(this.wishes, patch);
-        this.resolved_ = mergePatch(this.resolved_, patch);
+        this.resolved_ = overlay(this.resolved_, patch);
     }
 
     // Another scene starts from its file: names that both scenes use must not carry old overrides over.

@@ -61,14 +61,16 @@ export function mapToImage(frame, look) {
     const position = (value) => (value > 0 ? Math.min(kRampSteps, Math.round(kRampSteps * Math.sqrt(value * gain))) : 0);
     for (let i = 0; i < count; ++i) {
         const at = i * pixelStep;
+        // A spectral map's first row is its lowest.
+        const to = 4 * (frame.target === 'spectral' ? count - frame.width * (1 + Math.floor(i / frame.width)) + (i % frame.width) : i);
         if (colour) {
-            out[4 * i] = srgbRamp[position(values[at])];
-            out[4 * i + 1] = srgbRamp[position(values[at + bandStep])];
-            out[4 * i + 2] = srgbRamp[position(values[at + 2 * bandStep])];
+            out[to] = srgbRamp[position(values[at])];
+            out[to + 1] = srgbRamp[position(values[at + bandStep])];
+            out[to + 2] = srgbRamp[position(values[at + 2 * bandStep])];
         } else {
-            out.set(falseColorRamp[position(values[at + band * bandStep])], 4 * i);
+            out.set(falseColorRamp[position(values[at + band * bandStep])], to);
         }
-        out[4 * i + 3] = 255;
+        out[to + 3] = 255;
     }
     return image;
 }
