@@ -16,17 +16,18 @@ uniform float u_luminance;           // ledger units per fixed-point unit of Y
 
 void main() {
     ivec2 size = imageSize(u_concentration);
-    int row = int(gl_GlobalInvocationID.x);
-    if (row >= size.y) return;
+    int first = int(gl_GlobalInvocationID.x) * kScanTexels;
     float deposited = 0.0;
-    for (int x = 0; x < size.x; ++x) {
-        int index = 3 * (u_firstTexel + x + row * size.x);
+    for (int i = first; i < min(first + kScanTexels, size.x * size.y); ++i) {
+        ivec2 texel = ivec2(i % size.x, i / size.x);
+        int index = 3 * (u_firstTexel + i);
         vec3 xyz = vec3(map[index], map[index + 1], map[index + 2]);
         deposited += xyz.y;
-        vec2 uv = (vec2(x, row) + 0.5) / vec2(size);
+        vec2 uv = (vec2(texel) + 0.5) / vec2(size);
         vec3 rgb = u_xyzToRgb * xyz * (u_fluxPerFixed / texelExtent(u_view, uv, 1.0 / vec2(size)));
-        imageStore(u_concentration, ivec2(x, row), vec4(rgb, xyz.y));
+        imageStore(u_concentration, texel, vec4(rgb, 1.0));
     }
+    if (deposited == 0.0) return;
     uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
     atomicAdd(ledger[bank + uint(kLedgerDeposited)], uint(deposited * u_luminance + 0.5));
 }

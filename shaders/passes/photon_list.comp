@@ -10,6 +10,7 @@ layout(std430, binding = kBindList) buffer List {
     uint count;
     uint texels[];               // x + y * width
 };
+layout(std430, binding = kBindLedger) buffer Ledger { uint ledger[]; };
 
 uniform sampler2D u_front;
 uniform View u_emission;
@@ -29,6 +30,7 @@ void main() {
     uint found = uint(bitCount(lit));
     if (found == 0u) return;
     uint place = atomicAdd(count, found);
+    atomicAdd(ledger[(gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows) + uint(kLedgerPhotons)], found);
     atomicMax(groups[0], (place + found + uint(kGroupSize) - 1u) / uint(kGroupSize));
     for (int i = 0; i < kScanTexels; ++i) {
         if ((lit & (1u << i)) != 0u) texels[place++] = uint(first + i);

@@ -27,6 +27,7 @@ LAYOUT_CONST kLedgerRejected = 4;
 LAYOUT_CONST kLedgerLeftMap = 5;
 LAYOUT_CONST kLedgerNoReceiver = 6;
 LAYOUT_CONST kLedgerDeposited = 7;
+LAYOUT_CONST kLedgerPhotons = 8;       // a count, not flux
 LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
 LAYOUT_CONST kLedgerBanks = 32;
 

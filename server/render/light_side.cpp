@@ -1,0 +1,241 @@
+#include "render/light_side.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/light_views.h"
+#include "shaders/shared/layout.h"
+
+namespace caustream::render {
+
+namespace {
+
+constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
+constexpr int kOuterMapSize = 256;
+constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
+
+std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words) {
+    for (const GLuint word : words) hash = (hash ^ word) * 0x100000001b3ull;
+    return hash;
+}
+constexpr std::uint64_t kFnvStart = 0xcbf29ce484222325ull;
+
+std::vector<GLuint> readWords(const gl::Buffer& buffer, std::size_t count) {
+    std::vector<GLuint> words(count);
+    glGetNamedBufferSubData(buffer.get(), 0, static_cast<GLsizeiptr>(count * sizeof(GLuint)), words.data());
+    return words;
+}
+
+// Photons per side of the emission view, as many texels in all as a square grid but square on the light's sphere.
+glm::ivec2 gridSize(const View& view, int grid) {
+    const float aspect = std::sqrt(view.halfExtent.x / view.halfExtent.y);
+    const auto side = [](float texels) { return std::clamp(static_cast<int>(std::lround(texels)), 8, 8192); };
+    return {side(static_cast<float>(grid) * aspect), side(static_cast<float>(grid) / aspect)};
+}
+
+// The light's flux per unit solid angle (or area) at texel `index` of the map, as the divisor of concentration.
+double texelExtent(const View& view, int size, int index) {
+    const double hx = view.halfExtent.x, hy = view.halfExtent.y, area = 4.0 * hx * hy / (double(size) * size);
+    if (!view.perspective) return area;
+    const double x = ((index % size + 0.5) * 2.0 / size - 1.0) * hx, y = ((index / size + 0.5) * 2.0 / size - 1.0) * hy;
+    const double r2 = 1.0 + x * x + y * y;
+    return area / (r2 * std::sqrt(r2));
+}
+
+optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in) {
+    const Transport& transport = in.transport;
+    if (!transport.wavelengthsNm.empty()) return optics::sampleWavelengthsAt(transport.wavelengthsNm, in.light.spectrum);
+    return optics::sampleWavelengths(in.plan.wavelengths, in.light.spectrum);
+}
+
+}  // namespace
+
+struct LightSide::Emitter {
+    const scene::Object* caster;
+    const scene::Material* material;
+    View emission, back;
+};
+
+std::vector<LightSide::Emitter> LightSide::findEmitters(const Inputs& in, LightMaps& out) const {
+    std::vector<Emitter> emitters;
+    std::vector<Landing> landings;
+    std::vector<double> coarse = {out.wavelengths.nm.front()};
+    if (out.wavelengths.nm.size() > 1) coarse.push_back(out.wavelengths.nm.back());
+    for (const scene::Object& object : in.scene.geometry->objects) {
+        const scene::Material& material = in.scene.materials[static_cast<std::size_t>(object.material)];
+        if (!refracts(material, in.scene.outsideIndex)) continue;
+        const auto emission = emissionView(in.scene, in.light, object);
+        if (!emission) continue;
+        const std::vector<Landing> own = in.tracer.trace(in.scene, in.light, object, *emission, kCoarseGrid, coarse);
+        for (const Landing& landing : own) {
+            landings.push_back({landing.position, landing.flux * static_cast<float>(emission->extent())});
+        }
+        emitters.push_back({&object, &material, *emission, backView(in.scene, in.light, object)});
+    }
+    if (emitters.empty()) {
+        out.warnings.push_back("the light \"" + in.light.name + "\" reaches no caster: aim it at one");
+        return {};
+    }
+    const auto views = mapViews(in.scene, in.light, landings);
+    if (!views) {
+        out.warnings.push_back("no light that passes a caster lands on a receiver: no caustic to show");
+        return {};
+    }
+    out.mapView = views->inner;
+    out.outerView = views->outer;
+    return emitters;
+}
+
+void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_t firstWavelength, std::size_t count,
+                            double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out) {
+    const int grid = in.transport.photonGrid;
+    const glm::ivec2 front = gridSize(emitter.emission, grid);
+    const int back = grid > 512 ? 512 : 256;
+    const bool bands = in.bands;
+    const GLuint cookie = in.light.cookie >= 0 ? in.gpu.texture(in.light.cookie) : 0;
+    const float radius = emitter.caster->bounds.radius();
+
+    timer.stage("caster_layers", [&] {
+        // A photon counts only where its caster is the first thing that its ray meets.
+        const auto others = [&] {
+            in.gpu.drawWhere([&](const scene::Object& object) {
+                return &object != emitter.caster && !in.scene.materials[static_cast<std::size_t>(object.material)].thinWalled;
+            });
+        };
+        casterLayers_.run({in.gpu, *emitter.caster, emitter.emission, front.x, front.y, others}, CasterLayers::Side::Front, front_);
+        casterLayers_.run({in.gpu, *emitter.caster, emitter.back, back, back, nullptr}, CasterLayers::Side::Back, back_);
+    });
+    timer.stage("photon_list", [&] { photonList_.run({front_, emitter.emission, in.light, cookie}, list_, ledger_); });
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);   // list -> trace and its dispatch size
+
+    std::vector<TracedWavelength> wavelengths;
+    for (std::size_t i = firstWavelength; i < firstWavelength + count; ++i) {
+        const double nm = out.wavelengths.nm[i];
+        const double weightY = bands ? 1.0 / static_cast<double>(out.wavelengths.nm.size()) : out.wavelengths.xyz[i].y;
+        wavelengths.push_back({nm, in.scene.outsideIndex / optics::refractiveIndex(emitter.material->dispersion, nm),
+                               emitter.material->absorption.at(nm), weightY, out.wavelengths.xyz[i]});
+    }
+    timer.stage("photon_trace", [&] {
+        photonTrace_.run({.front = front_, .back = back_, .receivers = receivers_, .outerReceivers = outerReceivers_,
+                          .emission = emitter.emission, .backView = emitter.back, .mapView = out.mapView,
+                          .outerView = out.outerView, .list = list_, .light = in.light, .cookie = cookie,
+                          .wavelengths = std::move(wavelengths), .bands = bands ? static_cast<int>(count) : 0,
+                          .fixedPerFlux = fixedPerFlux, .ledgerPerFlux = kFixedRange / totalFlux_,
+                          .backSteps = in.transport.backSteps, .receiverSteps = in.transport.receiverSteps,
+                          .exitToleranceM = 0.01f * radius,
+                          .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius)},
+                         {map_, ledger_});
+    });
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back
+}
+
+void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
+    const int size = in.transport.mapSize;
+    const std::size_t texels = static_cast<std::size_t>(size) * size, outer = kOuterMapSize * kOuterMapSize;
+    map_.ensure(3 * (texels + outer) * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
+    glClearNamedBufferData(map_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& weight : out.wavelengths.xyz) sum += weight;
+    const double fixedPerFlux = kFixedRange / (totalFlux_ * std::max({sum.x, sum.y, sum.z}));
+    for (const Emitter& emitter : emitters) traceCaster(in, emitter, 0, out.wavelengths.nm.size(), fixedPerFlux, timer, out);
+
+    timer.stage("map_resolve", [&] {
+        const auto resolve = [&](const View& view, int side, std::size_t first, gl::Texture& concentration) {
+            mapResolve_.run({.map = map_, .view = view, .size = side, .firstTexel = static_cast<int>(first),
+                             .xyzToRgb = glm::mat3(out.wavelengths.xyzToRgb), .fluxPerFixed = 1.0 / fixedPerFlux,
+                             .ledgerPerFixed = kFixedRange / totalFlux_ / fixedPerFlux},
+                            concentration, ledger_);
+        };
+        resolve(out.mapView, size, 0, out.map);
+        resolve(out.outerView, kOuterMapSize, texels, out.outerMap);
+    });
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                    GL_TEXTURE_UPDATE_BARRIER_BIT);   // map -> camera_receivers, gap_fill, read-back
+    if (in.hash) out.mapHash = fnv1a(kFnvStart, readWords(map_, 3 * (texels + outer)));
+}
+
+void LightSide::traceBands(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
+    const int size = in.transport.mapSize;
+    const std::size_t texels = static_cast<std::size_t>(size) * size, outer = kOuterMapSize * kOuterMapSize;
+    const std::size_t wavelengths = out.wavelengths.nm.size();
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(most) / ((texels + outer) * sizeof(GLuint)), 1, wavelengths);
+    const double fixedPerFlux = kFixedRange / totalFlux_;
+    out.bands.assign(texels * wavelengths, 0.0f);
+    out.mapHash = in.hash ? kFnvStart : 0;
+    double inMap = 0.0;
+    batches_ = static_cast<int>((wavelengths + batch - 1) / batch);
+    for (std::size_t first = 0; first < wavelengths; first += batch) {
+        const std::size_t count = std::min(batch, wavelengths - first), words = (texels + outer) * count;
+        map_.ensure(words * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
+        glClearNamedBufferData(map_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+        for (const Emitter& emitter : emitters) traceCaster(in, emitter, first, count, fixedPerFlux, timer, out);
+        const std::vector<GLuint> map = readWords(map_, words);
+        if (in.hash) out.mapHash = fnv1a(out.mapHash, map);
+        for (std::size_t texel = 0; texel < texels; ++texel) {
+            const double scale = 1.0 / (fixedPerFlux * texelExtent(out.mapView, size, static_cast<int>(texel)));
+            for (std::size_t band = 0; band < count; ++band) {
+                out.bands[texel * wavelengths + first + band] = static_cast<float>(map[texel * count + band] * scale);
+            }
+        }
+        for (const GLuint word : map) inMap += word;
+    }
+    out.ledger.deposited = inMap / (fixedPerFlux * static_cast<double>(wavelengths));
+}
+
+void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
+    out.hasMap = false;
+    out.bands.clear();
+    out.warnings.clear();
+    out.ledger = {};
+    out.photons = 0;
+    out.mapHash = 0;
+    totalFlux_ = 0.0;
+    batches_ = 1;
+    out.wavelengths = wavelengthsOf(in);
+    out.hasShadow = in.plan.runs("receiver_depth");
+    if (out.hasShadow) {
+        out.shadowView = shadowView(in.scene, in.light);
+        timer.stage("receiver_depth", [&] {
+            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, 1024, true}, out.shadow);
+        });
+    }
+    if (!in.plan.runs("photon_trace")) return;
+    const std::vector<Emitter> emitters = findEmitters(in, out);
+    if (emitters.empty()) return;
+    for (const Emitter& emitter : emitters) totalFlux_ += emitter.emission.extent();
+
+    ledger_.ensure(layout::kLedgerBanks * layout::kLedgerRows * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "energy ledger");
+    glClearNamedBufferData(ledger_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    timer.stage("receiver_depth", [&] {
+        receiverDepth_.run({in.gpu, in.scene.materials, out.mapView, in.transport.mapSize}, receivers_);
+        receiverDepth_.run({in.gpu, in.scene.materials, out.outerView, kOuterMapSize}, outerReceivers_);
+    });
+    out.hasMap = true;
+    if (in.bands) {
+        traceBands(in, emitters, timer, out);
+    } else {
+        tracePicture(in, emitters, timer, out);
+    }
+}
+
+void LightSide::collect(LightMaps& out) const {
+    if (totalFlux_ <= 0.0) return;
+    const std::vector<GLuint> words = readWords(ledger_, layout::kLedgerBanks * layout::kLedgerRows);
+    double rows[layout::kLedgerRows] = {};
+    for (std::size_t i = 0; i < words.size(); ++i) rows[i % layout::kLedgerRows] += words[i];
+    const double flux = totalFlux_ / kFixedRange;
+    out.photons = static_cast<std::uint32_t>(rows[layout::kLedgerPhotons] / batches_);
+    out.ledger.onCasters = rows[layout::kLedgerOnCasters] * flux;
+    out.ledger.absorbed = rows[layout::kLedgerAbsorbed] * flux;
+    out.ledger.reflected = rows[layout::kLedgerReflected] * flux;
+    out.ledger.totalReflection = rows[layout::kLedgerTotalReflection] * flux;
+    out.ledger.rejected = rows[layout::kLedgerRejected] * flux;
+    out.ledger.leftMap = rows[layout::kLedgerLeftMap] * flux;
+    out.ledger.noReceiver = rows[layout::kLedgerNoReceiver] * flux;
+    if (out.bands.empty()) out.ledger.deposited = rows[layout::kLedgerDeposited] * flux;
+}
+
+}  // namespace caustream::render

@@ -1,0 +1,80 @@
+// Everything seen from the light: shadow, photons, spectral map. Its result depends on the scene, the materials, the key
+// light and the transport options only, so that it is kept while the camera moves.
+#pragma once
+#include <glm/mat3x3.hpp>
+#include <vector>
+
+#include "gl/names.h"
+#include "gl/shader_library.h"
+#include "gl/stage_timer.h"
+#include "optics/colour.h"
+#include "render/coarse_trace.h"
+#include "render/frame.h"
+#include "render/gpu_scene.h"
+#include "render/passes/caster_layers.h"
+#include "render/passes/map_resolve.h"
+#include "render/passes/photon_list.h"
+#include "render/passes/photon_trace.h"
+#include "render/passes/receiver_depth.h"
+#include "render/plan.h"
+
+namespace caustream::render {
+
+// What the light did to the scene: the GPU images of one light pose and the numbers that go with them.
+struct LightMaps {
+    bool hasShadow = false, hasMap = false;
+    View shadowView, mapView, outerView;
+    gl::Texture shadow;                    // DEPTH_COMPONENT32F
+    gl::Texture map, outerMap;             // RGBA32F concentration
+    optics::WavelengthSet wavelengths;
+    EnergyLedger ledger;
+    std::uint32_t photons = 0;
+    std::uint64_t mapHash = 0;             // FNV-1a of the fixed-point map; 0 unless asked for
+    std::vector<float> bands;              // [texel][wavelength] concentration, when bands were asked for
+    std::vector<std::string> warnings;
+};
+
+class LightSide {
+   public:
+    struct Inputs {
+        const scene::Scene& scene;
+        const GpuScene& gpu;
+        const CoarseTrace& tracer;
+        const scene::Light& light;         // the key light
+        const Transport& transport;        // photonGrid resolved, > 0
+        const RenderPlan& plan;
+        bool bands = false, hash = false;
+    };
+
+    explicit LightSide(gl::ShaderLibrary& shaders)
+        : casterLayers_(shaders), photonList_(shaders), receiverDepth_(shaders), photonTrace_(shaders), mapResolve_(shaders) {}
+
+    // Submits the passes that the plan runs.
+    void run(const Inputs& in, gl::StageTimer& timer, LightMaps& out);
+    // Reads ledger and photon count of the last run; waits for the GPU, so call it when the frame is submitted.
+    void collect(LightMaps& out) const;
+
+    // Images of the last caster traced, for looking at the passes.
+    const gl::Texture& frontLayer() const { return front_; }
+    const gl::Texture& receivers() const { return receivers_; }
+
+   private:
+    struct Emitter;                        // one caster in the light, with its views
+    std::vector<Emitter> findEmitters(const Inputs& in, LightMaps& out) const;
+    void traceCaster(const Inputs& in, const Emitter& emitter, std::size_t firstWavelength, std::size_t count,
+                     double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out);
+    void traceBands(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out);
+    void tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out);
+
+    CasterLayers casterLayers_;
+    PhotonList photonList_;
+    ReceiverDepth receiverDepth_;
+    PhotonTrace photonTrace_;
+    MapResolve mapResolve_;
+    gl::Texture front_, back_, receivers_, outerReceivers_;
+    gl::Buffer list_, map_, ledger_;
+    int batches_ = 1;                      // of wavelengths, in each of which every photon is listed
+    double totalFlux_ = 0.0;               // of the last run's emission views, an upper bound of all sums
+};
+
+}  // namespace caustream::render

@@ -1,0 +1,53 @@
+#include "render/passes/photon_trace.h"
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include "render/passes/photon_list.h"
+#include "shaders/shared/layout.h"
+
+namespace caustream::render {
+
+void PhotonTrace::run(const Inputs& in, const Outputs& out) {
+    const GLuint program = shaders_.program("photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}});
+    glUseProgram(program);
+    const gl::Uniforms uniforms(program);
+    setView(uniforms, "u_emission", in.emission);
+    setView(uniforms, "u_backView", in.backView);
+    setView(uniforms, "u_mapView", in.mapView);
+    setView(uniforms, "u_outerView", in.outerView);
+    setEmission(uniforms, in.light, in.emission);
+    uniforms.set("u_emissionToBack", in.backView.worldToView * glm::affineInverse(in.emission.worldToView))
+        .set("u_backToMap", in.mapView.worldToView * glm::affineInverse(in.backView.worldToView));
+
+    std::vector<glm::vec4> glass, xyz;
+    for (const TracedWavelength& wavelength : in.wavelengths) {
+        glass.emplace_back(wavelength.indexRatio, wavelength.absorptionPerM, wavelength.luminance, glass.size());
+        xyz.emplace_back(wavelength.xyz, 0.0);
+    }
+    uniforms.set("u_wavelengths", static_cast<int>(glass.size()))
+        .set("u_bands", in.bands)
+        .set("u_glass", glass)
+        .set("u_xyz", xyz)
+        .set("u_fixedPerFlux", static_cast<float>(in.fixedPerFlux))
+        .set("u_ledgerPerFlux", static_cast<float>(in.ledgerPerFlux))
+        .set("u_backSteps", in.backSteps)
+        .set("u_receiverSteps", in.receiverSteps)
+        .set("u_exitTolerance", in.exitToleranceM)
+        .set("u_reach", in.reachM)
+        .set("u_front", 0)
+        .set("u_back", 2)
+        .set("u_receivers", 3)
+        .set("u_outerReceivers", 4);
+    glBindTextureUnit(0, in.front.get());
+    if (in.cookie) glBindTextureUnit(1, in.cookie);
+    glBindTextureUnit(2, in.back.get());
+    glBindTextureUnit(3, in.receivers.get());
+    glBindTextureUnit(4, in.outerReceivers.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindList, in.list.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindMap, out.map.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, out.ledger.get());
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, in.list.get());
+    glDispatchComputeIndirect(0);
+}
+
+}  // namespace caustream::render

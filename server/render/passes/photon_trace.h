@@ -1,0 +1,48 @@
+// Refracts every photon at its wavelengths through one caster and deposits it in the fixed-point spectral map.
+#pragma once
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "gl/names.h"
+#include "gl/shader_library.h"
+#include "render/view.h"
+#include "scene/scene.h"
+
+namespace caustream::render {
+
+struct TracedWavelength {
+    double nm = 0.0;
+    double indexRatio = 1.0;          // outside / inside the caster
+    double absorptionPerM = 0.0;
+    double luminance = 0.0;           // share of the ledger; sums to 1
+    glm::dvec3 xyz{0.0};              // weight in the map
+};
+
+class PhotonTrace {
+   public:
+    struct Inputs {
+        const gl::Texture &front, &back;                     // caster_layers: emission view, back view
+        const gl::Texture &receivers, &outerReceivers;       // receiver_depth: map view, outer view
+        const View &emission, &backView, &mapView, &outerView;
+        const gl::Buffer& list;                              // photon_list
+        const scene::Light& light;
+        GLuint cookie = 0;
+        std::vector<TracedWavelength> wavelengths;           // <= kMostWavelengths
+        int bands = 0;                                       // 0: XYZ; else one band per wavelength, of this many
+        double fixedPerFlux = 1.0, ledgerPerFlux = 1.0;
+        int backSteps = 4, receiverSteps = 6;
+        float exitToleranceM = 1e-3f, reachM = 100.0f;
+    };
+    struct Outputs {
+        const gl::Buffer& map;        // u32, texel-major: inner map's texels, then the outer's; 3 (XYZ) or `bands` each
+        const gl::Buffer& ledger;     // kLedgerBanks x kLedgerRows u32
+    };
+
+    explicit PhotonTrace(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
+    void run(const Inputs& in, const Outputs& out);
+
+   private:
+    gl::ShaderLibrary& shaders_;
+};
+
+}  // namespace caustream::render
