@@ -1,0 +1,347 @@
+#include "render/pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <list>
+
+#include "error.h"
+#include "gl/context.h"
+#include "render/key_light.h"
+#include "render/light_side.h"
+#include "render/passes/camera_casters.h"
+#include "render/passes/camera_receivers.h"
+#include "render/passes/dispersive_refraction.h"
+#include "render/passes/gap_fill.h"
+#include "render/passes/present.h"
+#include "render/read_back.h"
+#include "scene/builtin_scenes.h"
+
+namespace caustream::render {
+
+namespace {
+
+constexpr std::size_t kMostLightMaps = 4;    // poses kept, about 10 MB each at 512^2
+constexpr float kAutoKey = 0.8f;             // picture value of a white receiver that faces the light at the caustic
+
+// Names of Target::Pass and what each shows.
+const std::vector<std::string> kPassNames = {"caster_layers",    "receiver_depth", "shadow",
+                                             "map_resolve",      "outer_map",      "camera_receivers",
+                                             "camera_casters",   "dispersive_refraction"};
+
+// Everything that the light's side depends on, byte by byte; equal keys mean equal maps.
+class LightKey {
+   public:
+    template <class T>
+    void add(const T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    template <class T>
+    void addAll(const std::vector<T>& values) {
+        add(values.size());
+        for (const T& value : values) add(value);
+    }
+    const std::string& bytes() const { return bytes_; }
+
+   private:
+    std::string bytes_;
+};
+
+std::string lightKey(const Request& request, const scene::Light& light, int photonGrid) {
+    LightKey key;
+    key.add(request.scene->geometry.get());
+    key.add(request.scene->outsideIndex);
+    for (const scene::Material& material : request.scene->materials) {
+        key.add(material.caster), key.add(material.thinWalled);
+        if (!material.caster) continue;
+        for (double nm = optics::kBandMinNm; nm <= optics::kBandMaxNm; nm += 50.0) {
+            key.add(optics::refractiveIndex(material.dispersion, nm));
+        }
+        key.addAll(material.absorption.nm), key.addAll(material.absorption.perM);
+    }
+    key.add(light.type), key.add(light.position), key.add(light.direction);
+    key.add(light.innerConeDeg), key.add(light.outerConeDeg), key.add(light.cookie);
+    key.add(light.spectrum.index());
+    for (double nm = optics::kBandMinNm; nm <= optics::kBandMaxNm; nm += 10.0) key.add(optics::relativePower(light.spectrum, nm));
+    if (const auto* lines = std::get_if<optics::Lines>(&light.spectrum)) key.addAll(lines->nm);
+    const Transport& t = request.transport;
+    key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.mapSize), key.add(t.backSteps);
+    key.add(t.receiverSteps), key.add(t.gapFill), key.add(t.filter), key.add(t.forceDispersive), key.add(request.wavelengthBands);
+    return key.bytes();
+}
+
+View cameraView(const scene::Camera& camera, const scene::Scene& scene, int width, int height) {
+    View view;
+    const glm::vec3 towards = camera.target - camera.eye;
+    const float distance = glm::length(towards);
+    view.worldToView = lookAlong(camera.eye, distance > 0.0f ? towards / distance : glm::vec3(0, 0, -1), camera.up);
+    const float tangent = std::tan(0.5f * glm::radians(camera.fovYDeg));
+    view.halfExtent = glm::vec2(tangent * static_cast<float>(width) / static_cast<float>(height), tangent);
+    view.nearM = 1e-3f * std::max(scene.geometry->bounds.radius(), 1e-6f);
+    view.farM = 1e6f * view.nearM;
+    return view;
+}
+
+struct SceneEntry {
+    explicit SceneEntry(const scene::Scene& scene) : gpu(scene.geometry), tracer(scene), geometry(scene.geometry) {}
+    GpuScene gpu;
+    CoarseTrace tracer;
+    std::shared_ptr<const scene::Geometry> geometry;
+};
+
+struct LightEntry {
+    std::string key;
+    LightMaps maps;
+};
+
+}  // namespace
+
+struct Pipeline::Impl {
+    gl::Context& context;
+    gl::ShaderLibrary& shaders;
+    gl::StageTimer timer;
+    LightSide lightSide;
+    GapFill gapFill;
+    CameraReceivers receivers;
+    CameraCasters casters;
+    DispersiveRefraction refraction;
+    Present present;
+
+    std::vector<std::unique_ptr<SceneEntry>> scenes;
+    std::list<LightEntry> lights;              // newest first
+    gl::Texture color, depth, front, back, output;
+
+    Impl(gl::Context& c, gl::ShaderLibrary& s)
+        : context(c), shaders(s), timer(c.software()), lightSide(s), gapFill(s), receivers(s), casters(s), refraction(s), present(s) {
+        glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
+    }
+
+    SceneEntry& sceneEntry(const scene::Scene& scene);
+    LightMaps& lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport, RenderPlan& plan, PlanFacts facts);
+    PlanFacts facts(const Request& request, const View& camera) const;
+    void cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
+                    const LightMaps& maps, const RenderPlan& plan, int width, int height);
+    void picture(const Request& request, const LightMaps& maps, float scale);
+};
+
+SceneEntry& Pipeline::Impl::sceneEntry(const scene::Scene& scene) {
+    for (const auto& entry : scenes) {
+        if (entry->geometry == scene.geometry) return *entry;
+    }
+    return *scenes.emplace_back(std::make_unique<SceneEntry>(scene));
+}
+
+PlanFacts Pipeline::Impl::facts(const Request& request, const View& camera) const {
+    PlanFacts facts;
+    const scene::Scene& scene = *request.scene;
+    for (const scene::Object& object : scene.geometry->objects) {
+        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+        if (!material.caster) {
+            facts.shadowCasters = true;
+            continue;
+        }
+        const bool bends = refracts(material, scene.outsideIndex);
+        facts.casters += bends;
+        facts.thinWalled += material.thinWalled;
+        facts.idleCasters += !bends && !material.thinWalled;
+        facts.dispersive = facts.dispersive || (bends && (optics::isDispersive(material.dispersion) || !material.absorption.empty()));
+        if ((bends || material.thinWalled) && !projectedBox(object.bounds, camera, request.width, request.height).empty()) {
+            facts.castersInCamera = true;
+        }
+    }
+    return facts;
+}
+
+LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport,
+                                     RenderPlan& plan, PlanFacts facts) {
+    const scene::Light& light = request.scene->lights[static_cast<std::size_t>(key)];
+    const std::string wanted = lightKey(request, light, transport.photonGrid);
+    auto found = std::find_if(lights.begin(), lights.end(), [&](const LightEntry& e) { return e.key == wanted; });
+    // The light's own images are not kept: looking at them means making them. So does a hash that was not taken.
+    const bool shown = request.target == Target::Pass && (request.pass == "caster_layers" || request.pass == "receiver_depth");
+    facts.lightCached = found != lights.end() && !shown && !(request.still && found->maps.hasMap && found->maps.mapHash == 0);
+    plan = makePlan(facts, request);
+    if (facts.lightCached) {
+        lights.splice(lights.begin(), lights, found);
+        return lights.front().maps;
+    }
+    if (found != lights.end()) {
+        lights.splice(lights.begin(), lights, found);
+    } else if (lights.size() < kMostLightMaps) {
+        lights.emplace_front();
+    } else {
+        lights.splice(lights.begin(), lights, std::prev(lights.end()));   // the oldest pose's images serve again
+    }
+    lights.front().key.clear();   // not valid until it is done
+    LightMaps& maps = lights.front().maps;
+    lightSide.run({*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still}, timer, maps);
+    if (maps.hasMap && plan.runs("gap_fill")) timer.stage("gap_fill", [&] { gapFill.run(maps.map); });
+    lightSide.collect(maps);
+    lights.front().key = wanted;
+    return maps;
+}
+
+void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
+                                const LightMaps& maps, const RenderPlan& plan, int width, int height) {
+    const scene::Scene& scene = *request.scene;
+    timer.stage("camera_receivers", [&] {
+        receivers.run({entry.gpu, scene.materials, lighting, view, width, height}, {color, depth});
+    });
+    if (!plan.runs("dispersive_refraction")) return;
+
+    // Casters from back to front, each into the picture of what is behind it.
+    std::vector<const scene::Object*> order;
+    for (const scene::Object& object : scene.geometry->objects) {
+        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+        if (refracts(material, scene.outsideIndex) || (material.caster && material.thinWalled)) order.push_back(&object);
+    }
+    std::sort(order.begin(), order.end(), [&](const scene::Object* a, const scene::Object* b) {
+        return view.toView(a->bounds.centre()).z < view.toView(b->bounds.centre()).z;
+    });
+    timer.stage("dispersive_refraction", [&] { refraction.begin(color); });
+    for (const scene::Object* object : order) {
+        PixelBox box;
+        timer.stage("camera_casters", [&] {
+            const bool whole = request.target == Target::Pass && request.pass == "camera_casters";
+            box = casters.run({entry.gpu, *object, view, width, height, whole}, {front, back});
+        });
+        if (box.empty()) continue;
+        const scene::Material& material = scene.materials[static_cast<std::size_t>(object->material)];
+        DispersiveRefraction::Glass glass;
+        glass.thinWalled = material.thinWalled;
+        glass.tint = glm::vec3(material.baseColor);
+        const optics::WavelengthSet& set = maps.wavelengths;
+        for (std::size_t i = 0; i < set.nm.size(); ++i) {
+            glass.wavelengths.push_back({static_cast<float>(optics::refractiveIndex(material.dispersion, set.nm[i]) / scene.outsideIndex),
+                                         glm::vec3(set.xyzToRgb * set.xyz[i]), static_cast<float>(material.absorption.at(set.nm[i]))});
+        }
+        timer.stage("dispersive_refraction", [&] {
+            refraction.run({view, front, back, box, depth, glass, lighting},
+                           {request.transport.backSteps, request.transport.receiverSteps}, color);
+        });
+    }
+}
+
+// The image that the request asks for, in `output`, rows top to bottom.
+void Pipeline::Impl::picture(const Request& request, const LightMaps& maps, float scale) {
+    Present::Inputs in{.image = color.get(), .mode = Present::Mode::Picture, .scale = scale, .downsample = request.still};
+    if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = maps.map.get(), .mode = Present::Mode::Map};
+    if (request.target == Target::Pass) {
+        if (request.pass == "caster_layers") in = {.image = lightSide.frontLayer().get(), .mode = Present::Mode::Normals};
+        if (request.pass == "receiver_depth") in = {.image = lightSide.receivers().get(), .mode = Present::Mode::Layer, .depthImage = true};
+        if (request.pass == "shadow") in = {.image = maps.shadow.get(), .mode = Present::Mode::Layer, .depthImage = true};
+        if (request.pass == "outer_map") in = {.image = maps.outerMap.get(), .mode = Present::Mode::Map};
+        if (request.pass == "camera_casters") in = {.image = front.get(), .mode = Present::Mode::Normals};
+    }
+    const bool linear = request.target == Target::Composite && request.sample != Sample::U8;
+    if (linear) in.mode = Present::Mode::Linear;
+    present.run(in, request.width, request.height, linear ? GL_RGBA32F : GL_RGBA8, {output});
+}
+
+Pipeline::Pipeline(gl::Context& context, gl::ShaderLibrary& shaders) : impl_(std::make_unique<Impl>(context, shaders)) {}
+Pipeline::~Pipeline() = default;
+
+void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
+    const auto report = [&](int done) {
+        if (progress) progress(done, 4);
+    };
+    for (const int cookie : {0, 1}) {
+        impl_->shaders.program("photon_list", {{"COOKIE", cookie}});
+        for (const int bands : {0, 1}) impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", cookie}});
+    }
+    for (const char* stem : {"caster_layers", "receiver_depth", "map_resolve"}) impl_->shaders.program(stem);
+    for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
+    report(1);
+    impl_->receivers.warmUp();
+    report(2);
+    impl_->refraction.warmUp();
+    impl_->present.warmUp();
+    report(3);
+
+    // Drivers finish a program when it is first used: one small frame uses them all.
+    if (auto scene = scene::loadBuiltin("gem")) {
+        Request request;
+        request.scene = std::make_shared<const scene::Scene>(std::move(*scene));
+        request.camera = request.scene->cameras.front();
+        request.width = request.height = 64;
+        request.transport.photonGrid = request.transport.mapSize = 64;
+        run(request);
+    }
+    collect();
+    report(4);
+}
+
+Frame Pipeline::run(const Request& request) {
+    Impl& impl = *impl_;
+    const auto start = std::chrono::steady_clock::now();
+    if (request.target == Target::Pass && std::find(kPassNames.begin(), kPassNames.end(), request.pass) == kPassNames.end()) {
+        throw Error("no pass \"" + request.pass + "\" to show");
+    }
+    impl.timer.beginFrame();
+    const scene::Scene& scene = *request.scene;
+    SceneEntry& entry = impl.sceneEntry(scene);
+    Transport transport = request.transport;
+    if (transport.photonGrid == 0) transport.photonGrid = impl.context.software() ? 256 : 1024;
+
+    // Light's side, from the cache where nothing changed
+    const View view = cameraView(request.camera, scene, request.width, request.height);
+    const int key = keyLight(scene);
+    RenderPlan plan;
+    LightMaps& maps = impl.lightMaps(request, entry, key, transport, plan, impl.facts(request, view));
+    Frame frame;
+    if (scene.lights.size() > 1) {
+        frame.stats.warnings.push_back("several lights: \"" + scene.lights[static_cast<std::size_t>(key)].name +
+                                       "\", the strongest, throws the caustic; the others light directly");
+    }
+
+    // Camera's side
+    std::optional<glm::vec3> landing;
+    if (maps.hasMap && scene.lights[static_cast<std::size_t>(key)].type != scene::LightType::Directional) {
+        landing = maps.landing;
+    }
+    Lighting lighting = makeLighting(scene, key, landing);
+    lighting.hasShadow = maps.hasShadow, lighting.shadowView = maps.shadowView, lighting.shadowDepth = maps.shadow.get();
+    lighting.hasMap = maps.hasMap, lighting.mapView = maps.mapView, lighting.outerView = maps.outerView;
+    lighting.map = maps.map.get(), lighting.outerMap = maps.outerMap.get();
+    const float unit = radianceUnit(lighting);
+    const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey;
+    frame.stats.exposureEv = std::log2(scale / unit);
+    const bool picture = request.target != Target::Spectral;
+    if (picture) {
+        const int zoom = request.still ? 2 : 1;
+        impl.cameraSide(request, entry, view, lighting, maps, plan, zoom * request.width, zoom * request.height);
+    }
+    const bool floats = request.target == Target::Spectral && request.sample != Sample::U8;
+    if (!floats) impl.timer.stage("present", [&] { impl.picture(request, maps, request.sample == Sample::U8 ? scale : unit); });
+
+    // Read-back
+    impl.timer.stage("read_back", [&] {
+        if (!floats) readImage(impl.output, request.sample, frame);
+        else if (request.wavelengthBands) packBands(maps.bands, request.transport.mapSize, static_cast<int>(maps.wavelengths.nm.size()), request.sample, frame);
+        else readImage(maps.map, request.sample, frame);
+    });
+    frame.wavelengthsNm = maps.wavelengths.nm;
+    frame.lightMatrix = maps.mapView.worldToClip();
+    frame.mapHash = maps.mapHash;
+    for (const auto& row : impl.timer.rows()) frame.stats.stages.push_back({row.name, row.ms});
+    frame.stats.plan = std::move(plan.entries);
+    frame.stats.ledger = maps.ledger;
+    frame.stats.photons = maps.photons;
+    frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
+    frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (glGetError() == GL_OUT_OF_MEMORY) throw Error("the GPU is out of memory; ask for a smaller picture, map or photon grid");
+    return frame;
+}
+
+void Pipeline::collect() {
+    // Whoever renders a scene holds its geometry; an entry that holds it alone is no longer wanted.
+    std::erase_if(impl_->scenes, [](const auto& entry) { return entry->geometry.use_count() <= 2; });
+}
+
+std::span<const std::string> passNames() { return kPassNames; }
+
+}  // namespace caustream::render
