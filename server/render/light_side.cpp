@@ -83,6 +83,7 @@ std::vector<LightSide::Emitter> LightSide::findEmitters(const Inputs& in, LightM
     }
     out.mapView = views->inner;
     out.outerView = views->outer;
+    out.landing = views->landing;
     return emitters;
 }
 

@@ -26,6 +26,7 @@ struct LightMaps {
     View shadowView, mapView, outerView;
     gl::Texture shadow;                    // DEPTH_COMPONENT32F
     gl::Texture map, outerMap;             // RGBA32F concentration
+    glm::vec3 landing{0.0f};               // where the caustic lies: the mean of its flux
     optics::WavelengthSet wavelengths;
     EnergyLedger ledger;
     std::uint32_t photons = 0;

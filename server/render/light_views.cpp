@@ -203,6 +203,7 @@ std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& 
     const float least = 1e-4f * (views.inner.perspective ? 1.0f : scene.geometry->bounds.radius());
     const float widest = views.inner.perspective ? kWidestTangent : 3.0f * scene.geometry->bounds.radius();
     views.inner.halfExtent = glm::clamp(kMargin * halfExtentAround(rect), glm::vec2(least), glm::vec2(widest));
+    views.landing = mean;
     views.outer = views.inner;
     views.outer.halfExtent = glm::min(glm::max(4.0f * views.inner.halfExtent, 1.1f * halfExtentAround(all)), glm::vec2(widest));
     return views;

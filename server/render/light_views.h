@@ -19,6 +19,7 @@ View backView(const scene::Scene& scene, const scene::Light& light, const scene:
 struct MapViews {
     View inner;             // the smallest rolled rectangle that takes 99.5% of the flux
     View outer;             // same axis, wider: what lands outside the inner one
+    glm::vec3 landing;      // mean of the flux, world space
 };
 // Fitted to where light lands; nothing when it lands nowhere. A function of its arguments alone, so that equal input
 // gives equal bits whatever came before.

@@ -12,6 +12,7 @@
 #include "gl/context.h"
 #include "render/key_light.h"
 #include "render/light_side.h"
+#include "render/light_uniforms.h"
 #include "render/passes/camera_casters.h"
 #include "render/passes/camera_receivers.h"
 #include "render/passes/dispersive_refraction.h"
@@ -125,8 +126,19 @@ struct Pipeline::Impl {
     PlanFacts facts(const Request& request, const View& camera) const;
     void cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
                     const LightMaps& maps, const RenderPlan& plan, int width, int height);
-    void picture(const Request& request, const LightMaps& maps, float scale);
+    void picture(const Request& request, LightMaps& maps, float scale);
+    const gl::Texture& mapOf(LightMaps& maps, int size);
 };
+
+// The spectral map, black where no light gets through.
+const gl::Texture& Pipeline::Impl::mapOf(LightMaps& maps, int size) {
+    if (!maps.hasMap) {
+        const float black[4] = {};
+        maps.map.ensure(size, size, GL_RGBA32F, "spectral map");
+        glClearTexImage(maps.map.get(), 0, GL_RGBA, GL_FLOAT, black);
+    }
+    return maps.map;
+}
 
 SceneEntry& Pipeline::Impl::sceneEntry(const scene::Scene& scene) {
     for (const auto& entry : scenes) {
@@ -220,16 +232,16 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
                                          glm::vec3(set.xyzToRgb * set.xyz[i]), static_cast<float>(material.absorption.at(set.nm[i]))});
         }
         timer.stage("dispersive_refraction", [&] {
-            refraction.run({view, front, back, box, depth, glass, lighting},
+            refraction.run({view, front, back, box, object->bounds, depth, glass, lighting},
                            {request.transport.backSteps, request.transport.receiverSteps}, color);
         });
     }
 }
 
 // The image that the request asks for, in `output`, rows top to bottom.
-void Pipeline::Impl::picture(const Request& request, const LightMaps& maps, float scale) {
+void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scale) {
     Present::Inputs in{.image = color.get(), .mode = Present::Mode::Picture, .scale = scale, .downsample = request.still};
-    if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = maps.map.get(), .mode = Present::Mode::Map};
+    if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = mapOf(maps, request.transport.mapSize).get(), .mode = Present::Mode::Map};
     if (request.target == Target::Pass) {
         if (request.pass == "caster_layers") in = {.image = lightSide.frontLayer().get(), .mode = Present::Mode::Normals};
         if (request.pass == "receiver_depth") in = {.image = lightSide.receivers().get(), .mode = Present::Mode::Layer, .depthImage = true};
@@ -322,7 +334,7 @@ Frame Pipeline::run(const Request& request) {
     impl.timer.stage("read_back", [&] {
         if (!floats) readImage(impl.output, request.sample, frame);
         else if (request.wavelengthBands) packBands(maps.bands, request.transport.mapSize, static_cast<int>(maps.wavelengths.nm.size()), request.sample, frame);
-        else readImage(maps.map, request.sample, frame);
+        else readImage(impl.mapOf(maps, request.transport.mapSize), request.sample, frame);
     });
     frame.wavelengthsNm = maps.wavelengths.nm;
     frame.lightMatrix = maps.mapView.worldToClip();
@@ -338,8 +350,10 @@ Frame Pipeline::run(const Request& request) {
 }
 
 void Pipeline::collect() {
-    // Whoever renders a scene holds its geometry; an entry that holds it alone is no longer wanted.
-    std::erase_if(impl_->scenes, [](const auto& entry) { return entry->geometry.use_count() <= 2; });
+    // Whoever renders a scene holds its geometry; an entry whose three parts alone hold it is no longer wanted. Its light
+    // maps go too: their keys name the geometry by its address, which may come again.
+    const auto unused = [](const auto& entry) { return entry->geometry.use_count() <= 3; };
+    if (std::erase_if(impl_->scenes, unused) > 0) impl_->lights.clear();
 }
 
 std::span<const std::string> passNames() { return kPassNames; }
