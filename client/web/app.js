@@ -21,6 +21,7 @@ let stale = false;    // the panel shows an older document
 
 const connection = new Connection(socketUrl(), {
     hello: () => ({ ...session.resumption(), ...(sessionStorage.token ? { token: sessionStorage.token } : {}) }),
+    forget: () => session.forget(),
     welcome: (message) => start(message),
     state: (message) => { session.resolve(message); problem((message.scene.warnings ?? []).join(' ')); },
     frame: (buffer, recvUs) => receiveFrame(buffer, recvUs),

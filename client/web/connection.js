@@ -8,7 +8,7 @@ const kSessionTaken = 4409, kAuthRequired = 4401;
 
 export class Connection {
     // handlers: {<op>(message) of every op but ok, error and pong; frame(buffer, recvUs); hello() -> its fields;
-    // refused(error) for errors that answer no request; link(state, detail) with state "open", "retry", "taken" or "auth";
+    // forget() what hello offered to resume; refused(error) for errors that answer no request; link(state, detail) with state "open", "retry", "taken" or "auth";
     // roundTrip(ms)}
     constructor(url, handlers) {
         this.url_ = url;
@@ -22,6 +22,7 @@ export class Connection {
 
     connect() {
         clearTimeout(this.retryTimer_);
+        clearInterval(this.pingTimer_);
         this.socket_?.close();
         const socket = new WebSocket(this.url_, kSubprotocol);
         socket.binaryType = 'arraybuffer';
@@ -29,7 +30,10 @@ export class Connection {
         this.comeBackMs_ = null;
         this.lastError_ = null;
         this.heardMs_ = performance.now();
-        socket.onopen = () => this.hello_();
+        socket.onopen = () => {
+            this.pingTimer_ = setInterval(() => this.ping_(), kPingEveryMs);
+            this.hello_();
+        };
         socket.onmessage = (event) => socket === this.socket_ && this.receive_(event.data);
         socket.onclose = (event) => socket === this.socket_ && this.lost_(event.code);
     }
@@ -56,13 +60,21 @@ export class Connection {
     }
 
     hello_() {
+        const fields = this.handlers_.hello();
         this.request('hello', {
             client: { name: 'caustream-web', version: '1' },
             caps: ['jpeg', 'png', 'raw', 'f16', 'f32'],
             max_inflight: 4,
-            ...this.handlers_.hello(),
-        }).catch((error) => this.handlers_.refused(error));
-        this.pingTimer_ = setInterval(() => this.ping_(), kPingEveryMs);
+            ...fields,
+        }).catch((error) => {
+            if (error.code === 'lost') return;
+            this.handlers_.refused(error);
+            // What was right for the last server may be wrong for this one; better a fresh start than none.
+            if (fields.resume && !error.fatal) {
+                this.handlers_.forget();
+                this.hello_();
+            }
+        });
     }
 
     ping_() {

@@ -1,6 +1,6 @@
 // Files in and out: a GLB that is opened or dropped goes up, a still picture comes down.
 import { sentence } from './connection.js';
-import { Encoding, Flag, frameBlob } from './frame.js';
+import { Encoding, frameBlob } from './frame.js';
 import { Upload } from './upload.js';
 
 const byId = (id) => document.getElementById(id);
@@ -14,7 +14,7 @@ export class Files {
         this.limits = null;          // from the welcome
         this.kept_ = new Map();      // sha256 -> bytes: for another server that lacks what this page shows
         this.upload_ = null;
-        this.awaitedStill_ = null;
+        this.awaited_ = null;
         this.bind_();
     }
 
@@ -77,18 +77,16 @@ export class Files {
         const isPicture = shown.stream?.encoding !== 'raw';
         byId('save').disabled = true;
         try {
-            const still = new Promise((resolve, reject) => (this.awaitedStill_ = { resolve, reject }));
-            still.catch(() => {});    // whoever fails first below is reported; this one need not be twice
             if (isPicture) await this.connection_.request('update', { patch: { stream: { encoding: 'png' } } });
-            await this.connection_.request('frame.request', { still: true });
-            const frame = await still;
+            const { frame_seq } = await this.connection_.request('frame.request', { still: true });
+            const frame = await new Promise((resolve, reject) => (this.awaited_ = { seq: frame_seq, resolve, reject }));
             const isPng = frame.encoding === Encoding.png;
             const blob = isPng ? frameBlob(frame) : await new Promise((done) => canvas.toBlob(done, 'image/png'));
             this.download_(blob, `caustream-${(shown.scene?.[1] ?? 'scene').slice(0, 12)}.png`);
         } catch (error) {
             this.page_.problem(sentence(error));
         }
-        this.awaitedStill_ = null;
+        this.awaited_ = null;
         if (isPicture) this.connection_.request('update', { patch: { stream: { encoding: 'jpeg' } } }).catch(() => {});
         byId('save').disabled = false;
     }
@@ -104,11 +102,11 @@ export class Files {
 
     // Every frame, as it arrives.
     frame(frame) {
-        if (frame.flags & Flag.still) this.awaitedStill_?.resolve(frame);
+        if (frame.seq === this.awaited_?.seq) this.awaited_.resolve(frame);
     }
 
     lost() {
         this.upload_?.stop('The connection was lost during the upload. Open the file again.');
-        this.awaitedStill_?.reject({ message: 'The connection was lost before the picture came.' });
+        this.awaited_?.reject({ message: 'The connection was lost before the picture came.' });
     }
 }

@@ -2,7 +2,6 @@
 import { mapToImage } from './spectral_map.js';
 
 export const Encoding = { jpeg: 1, raw: 2, zstd: 3, png: 4 };
-export const Flag = { still: 1, scaled: 2, converged: 4, test: 8 };
 const kMimeTypes = { [Encoding.jpeg]: 'image/jpeg', [Encoding.png]: 'image/png' };
 const kTargets = { 1: 'composite', 2: 'spectral', 3: 'pass' };
 const kBytesPerSample = { 1: 1, 2: 2, 3: 4 };

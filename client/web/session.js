@@ -156,6 +156,11 @@ export class Session {
         this.changed_();
     }
 
+    forget() {
+        this.id = null;
+        this.wishes = {};
+    }
+
     // For hello: the session to go on with, and its document for a server that has lost it.
     resumption() {
         return this.id ? { resume: { session: this.id, state: this.wishes, rev: this.rev, input_seq: this.inputSeq } } : {};
