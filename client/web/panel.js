@@ -22,7 +22,7 @@ function show(id, position, text) {
 }
 
 export class Panel {
-    // session: the document. view: whose look the band and exposure of raw maps change.
+    // session: the document. view: whose look the band of raw maps changes.
     constructor(session, view) {
         this.session_ = session;
         this.view_ = view;
@@ -85,7 +85,6 @@ export class Panel {
     }
 
     expose_(ev) {
-        this.view_.look.ev = ev;
         this.session_.change({ camera: { exposure: ev === null ? ['auto'] : ['ev', ev] } });
     }
 
@@ -175,7 +174,6 @@ export class Panel {
     refreshExposure_(shown) {
         const exposure = shown.camera?.exposure ?? ['auto'];
         const automatic = exposure[0] === 'auto';
-        this.view_.look.ev = automatic ? null : exposure[1];
         byId('auto-exposure').checked = automatic;
         byId('exposure').disabled = automatic;
         const ev = automatic ? this.exposureEv_ : exposure[1];

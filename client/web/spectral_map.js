@@ -44,21 +44,20 @@ function gainFor(values) {
     return 1 / Math.max(picked[Math.floor(picked.length * 0.995)], 1e-6);
 }
 
-// frame: encoding raw. look: {band: index, or -1 for colour; ev: stops, or null for automatic}. Returns ImageData.
+// frame: encoding raw. look: {band: index, or -1 for colour}. Returns ImageData.
 export function mapToImage(frame, look) {
     const values = samples(frame);
     const count = frame.width * frame.height;
     const wanted = gainFor(values);
     const jumped = wanted > 4 * automaticGain || automaticGain > 4 * wanted;
     automaticGain = jumped ? wanted : automaticGain * kExposureInertia + wanted * (1 - kExposureInertia);
-    const gain = look.ev === null ? automaticGain : 2 ** look.ev * (frame.scale || 1);
     const colour = frame.bands === 3 && look.band < 0;
     const band = Math.min(Math.max(look.band, 0), frame.bands - 1);
     const pixelStep = frame.planar ? 1 : frame.bands, bandStep = frame.planar ? count : 1;
 
     const image = new ImageData(frame.width, frame.height);
     const out = image.data;
-    const position = (value) => (value > 0 ? Math.min(kRampSteps, Math.round(kRampSteps * Math.sqrt(value * gain))) : 0);
+    const position = (value) => (value > 0 ? Math.min(kRampSteps, Math.round(kRampSteps * Math.sqrt(value * automaticGain))) : 0);
     for (let i = 0; i < count; ++i) {
         const at = i * pixelStep;
         // A spectral map's first row is its lowest.

@@ -10,7 +10,7 @@ export class View {
         this.canvas_ = canvas;
         this.context_ = canvas.getContext('2d', { alpha: false });
         this.report_ = { ack, failed, painted };
-        this.look = { band: -1, ev: null };
+        this.look = { band: -1 };
         this.latenciesMs_ = [];
         this.paintedMs_ = [];
         this.reset();
