@@ -174,10 +174,8 @@ Status Loader::readPart(const tinygltf::Mesh& mesh, const PlacedNode& placed, st
         if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) >= model_.materials.size())
             return fail(what + " names material " + std::to_string(primitive.material) + ", which is not there");
         const int material = primitive.material >= 0 ? primitive.material : defaultMaterial();
-        const int uvSet = primitive.material >= 0
-                              ? model_.materials[primitive.material].pbrMetallicRoughness.baseColorTexture.texCoord
-                              : 0;
-        const auto soup = readPrimitive(model_, primitive, uvSet, budget_, what);
+        const UvSource uv = primitive.material >= 0 ? uvSource(model_.materials[primitive.material]) : UvSource{};
+        const auto soup = readPrimitive(model_, primitive, uv, budget_, what);
         if (!soup) return tl::unexpected(soup.error());
         if (soup->indices.empty()) {
             warn(what + " has no triangles and is not shown");

@@ -117,6 +117,21 @@ std::string NameTable::unique(const std::string& name, const std::string& kind, 
     return candidate;
 }
 
+UvSource uvSource(const tinygltf::Material& source) {
+    const tinygltf::TextureInfo& info = source.pbrMetallicRoughness.baseColorTexture;
+    UvSource uv{info.texCoord};
+    const auto* extra = extension(info.extensions, "KHR_texture_transform");
+    if (!extra) return uv;
+    uv.set = static_cast<int>(std::clamp(numberOr(member(*extra, "texCoord"), uv.set), 0.0, 1e6));
+    const std::vector<double> offset = numbers(member(*extra, "offset")), scale = numbers(member(*extra, "scale"));
+    const double rotation = numberOr(member(*extra, "rotation"), 0.0), c = std::cos(rotation), s = std::sin(rotation);
+    const glm::dvec2 by = scale.size() == 2 ? glm::dvec2(scale[0], scale[1]) : glm::dvec2(1.0);
+    uv.transform[0] = glm::dvec3(c * by.x, -s * by.x, 0.0);
+    uv.transform[1] = glm::dvec3(s * by.y, c * by.y, 0.0);
+    if (offset.size() == 2) uv.transform[2] = glm::dvec3(offset[0], offset[1], 1.0);
+    return uv;
+}
+
 tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source, TextureTable& textures,
                                                const std::string& name, std::vector<std::string>& warnings) {
     const std::string what = "material \"" + name + "\"";

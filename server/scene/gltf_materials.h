@@ -36,6 +36,13 @@ class NameTable {
     std::vector<std::string> taken_;
 };
 
+// Where a material's base-colour texture takes its coordinates: the attribute set, and KHR_texture_transform.
+struct UvSource {
+    int set = 0;
+    glm::dmat3 transform{1.0};  // of (u, v, 1)
+};
+UvSource uvSource(const tinygltf::Material& source);
+
 tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source, TextureTable& textures,
                                                const std::string& name, std::vector<std::string>& warnings);
 

@@ -36,7 +36,7 @@ std::vector<std::uint32_t> triangleList(std::vector<std::uint32_t> in, int mode)
 }  // namespace
 
 tl::expected<TriangleSoup, LoadError> readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                                    int uvSet, std::size_t& budget, const std::string& what) {
+                                                    const UvSource& uv, std::size_t& budget, const std::string& what) {
     TriangleSoup soup;
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) return soup;
 
@@ -58,11 +58,12 @@ tl::expected<TriangleSoup, LoadError> readPrimitive(const tinygltf::Model& model
         soup.normals = std::move(*normals);
         if (soup.normals.size() != soup.positions.size()) return fail(what + " has fewer normals than positions");
     }
-    if (const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(uvSet)); accessor >= 0) {
+    if (const int accessor = attribute(primitive, "TEXCOORD_" + std::to_string(uv.set)); accessor >= 0) {
         auto uvs = readVec2(model, accessor, soup.positions.size(), what + "'s TEXCOORD");
         if (!uvs) return tl::unexpected(uvs.error());
         soup.uvs = std::move(*uvs);
         if (soup.uvs.size() != soup.positions.size()) return fail(what + " has fewer texture coordinates than positions");
+        for (glm::dvec2& p : soup.uvs) p = glm::dvec2(uv.transform * glm::dvec3(p, 1.0));
     }
 
     // triangles

@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "scene/gltf_loader.h"
+#include "scene/gltf_materials.h"
 
 namespace caustream::scene {
 
@@ -22,6 +22,6 @@ struct TriangleSoup {
 // Strips and fans become lists; points and lines give no triangles. `budget` is what may still be read: vertices and
 // indices together; it is charged. Errors name the accessor.
 tl::expected<TriangleSoup, LoadError> readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                                    int uvSet, std::size_t& budget, const std::string& what);
+                                                    const UvSource& uv, std::size_t& budget, const std::string& what);
 
 }  // namespace caustream::scene
