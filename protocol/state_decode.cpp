@@ -244,8 +244,8 @@ Dispersion decodeDispersion(const Item& item) {
     const bool isClamped = std::holds_alternative<Abbe>(dispersion);
     for (double nm = kBandMinNm; nm <= kBandMaxNm; nm += 1.0) {
         const double n = indexAt(dispersion, nm);
-        if (!(n >= (isClamped ? -1e9 : 1.0) && n <= 5.0)) {
-            item.fail(ErrorCode::OutOfRange, "the index must stay within 1 to 5 between 380 and 680 nm");
+        if (!(n >= (isClamped ? -1e9 : 1.0) && n <= 6.0)) {
+            item.fail(ErrorCode::OutOfRange, "the index must stay within 1 to 6 between 380 and 680 nm");
             break;
         }
     }
