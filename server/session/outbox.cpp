@@ -1,0 +1,106 @@
+#include "session/outbox.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace caustream::session {
+namespace {
+
+bool sameEpoch(protocol::StreamInfo a, const protocol::StreamInfo& b) {
+    a.epoch = b.epoch;
+    if (a.target != protocol::Target::Spectral) {
+        a.lightMatrix = b.lightMatrix;  // only who reads the map needs to know where it lies
+    }
+    return a == b;
+}
+
+}  // namespace
+
+void Outbox::discardStill() {
+    if (const auto& waiting = mailbox_.peek(); waiting && (waiting->header.flags & protocol::kFrameStill)) {
+        mailbox_.clear();
+    }
+}
+
+bool Outbox::acknowledge(const protocol::Ack& ack, std::uint64_t nowUs) {
+    if (ack.seq > sent_) {
+        return false;
+    }
+    while (!waiting_.empty() && waiting_.front().seq <= ack.seq) {
+        rttMs_ = static_cast<double>(nowUs - waiting_.front().atUs) * 1e-3;
+        waiting_.pop_front();
+    }
+    return true;
+}
+
+void Outbox::stage(OutgoingFrame frame) {
+    frame.header.frameSeq = ++sent_;
+    if (!info_ || !sameEpoch(frame.info, *info_)) {
+        frame.info.epoch = static_cast<std::uint16_t>(info_ ? info_->epoch + 1 : 1);
+        info_ = frame.info;
+        text(protocol::encode(frame.info));
+    }
+    frame.header.epoch = info_->epoch;
+    if (frame.requestId) {
+        frame.stats.frameSeq = frame.header.frameSeq;
+        text(protocol::encode(withConnection(frame.stats)));
+        protocol::Ok reply{.id = *frame.requestId};
+        reply.frame = protocol::FrameReply{frame.header.frameSeq, frame.mapHash};
+        text(protocol::encode(reply));
+    }
+    staged_ = std::move(frame);
+}
+
+std::optional<Outgoing> Outbox::next(std::uint64_t nowUs) {
+    if (texts_.empty() && !staged_) {
+        if (!requested_.empty()) {
+            stage(std::move(requested_.front()));
+            requested_.pop_front();
+        } else if (mailbox_.peek() && unacknowledged() < window_) {
+            stage(*mailbox_.take());
+        }
+    }
+    if (!texts_.empty()) {
+        Outgoing outgoing{stream::WireBuffer(texts_.front()), false};
+        texts_.pop_front();
+        return outgoing;
+    }
+    if (!staged_) {
+        return std::nullopt;
+    }
+    OutgoingFrame frame = std::move(*staged_);
+    staged_.reset();
+    frame.header.serverUs = nowUs;
+    std::ranges::copy(protocol::encodeHeader(frame.header), frame.buffer.data());
+    if (!frame.requestId) {
+        waiting_.push_back({frame.header.frameSeq, nowUs});
+    }
+    sentBytes_ += frame.buffer.size();
+    frame.stats.frameSeq = frame.header.frameSeq;
+    stats_ = std::move(frame.stats);
+    return Outgoing{std::move(frame.buffer), true};
+}
+
+std::optional<std::uint64_t> Outbox::waitingSinceUs() const {
+    return waiting_.empty() ? std::nullopt : std::optional(waiting_.front().atUs);
+}
+
+std::size_t Outbox::textBytes() const {
+    return std::accumulate(texts_.begin(), texts_.end(), std::size_t{0},
+                           [](std::size_t sum, const std::string& message) { return sum + message.size(); });
+}
+
+std::optional<protocol::Stats> Outbox::takeStats() {
+    std::optional<protocol::Stats> stats = std::exchange(stats_, std::nullopt);
+    return stats ? std::optional(withConnection(std::move(*stats))) : std::nullopt;
+}
+
+protocol::Stats Outbox::withConnection(protocol::Stats stats) const {
+    stats.window = window_;
+    stats.dropped = static_cast<std::uint32_t>(mailbox_.dropped());
+    stats.rttMs = rttMs_;
+    return stats;
+}
+
+}  // namespace caustream::session

@@ -1,0 +1,90 @@
+// What waits for one connection's socket, in the order it must leave: texts first, then frames, each behind the
+// stream.info of its epoch; a frame that was asked for also behind its statistics and the reply. Numbers frames as they leave and keeps the acknowledgement window. Network thread only.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "protocol/messages.h"
+#include "stream/frame_mailbox.h"
+#include "stream/wire_buffer.h"
+
+namespace caustream::session {
+
+struct Outgoing {
+    stream::WireBuffer buffer;
+    bool binary = false;
+};
+
+// A frame ready to leave. The outbox fills header.frameSeq, header.epoch, header.serverUs and info.epoch.
+struct OutgoingFrame {
+    stream::WireBuffer buffer;  // kFrameHeaderBytes free, then the payload
+    protocol::FrameHeader header;
+    protocol::StreamInfo info;
+    protocol::Stats stats;                    // frameSeq and the window's numbers are filled by the outbox
+    std::optional<std::uint32_t> requestId;   // of the frame.request that it answers
+    std::string mapHash;                      // for that answer
+};
+
+class Outbox {
+   public:
+    void setMaxInflight(std::uint32_t frames) { window_ = frames < kWindow ? frames : kWindow; }
+
+    void text(std::string message) { texts_.push_back(std::move(message)); }
+    void streamed(std::uint64_t order, OutgoingFrame frame) { mailbox_.put(order, std::move(frame)); }
+    void requested(OutgoingFrame frame) { requested_.push_back(std::move(frame)); }
+
+    // A still that waits shows what is no more; a frame of a moving picture is still worth its time.
+    void discardStill();
+
+    // Cumulative. False when `ack` names a frame that was not sent: nothing changes then.
+    bool acknowledge(const protocol::Ack& ack, std::uint64_t nowUs);
+
+    // The next message, if the window lets one leave.
+    std::optional<Outgoing> next(std::uint64_t nowUs);
+
+    // Frames of the stream that left and were not acknowledged. What frame.request asked for stands outside the window.
+    std::uint32_t unacknowledged() const { return static_cast<std::uint32_t>(waiting_.size()); }
+    std::uint32_t window() const { return window_; }
+
+    // And those that wait for the socket to take them.
+    std::uint32_t occupied() const {
+        const bool stagedStream = staged_ && !staged_->requestId;
+        return unacknowledged() + (mailbox_.peek() ? 1u : 0u) + (stagedStream ? 1u : 0u);
+    }
+
+    // When the oldest of them left.
+    std::optional<std::uint64_t> waitingSinceUs() const;
+
+    std::size_t textBytes() const;
+    std::uint64_t dropped() const { return mailbox_.dropped(); }
+    std::uint32_t sent() const { return sent_; }
+    std::uint64_t sentBytes() const { return sentBytes_; }
+    double rttMs() const { return rttMs_; }
+
+    // Of the newest frame that left, with this connection's numbers; nothing before the first and once it was taken.
+    std::optional<protocol::Stats> takeStats();
+
+   private:
+    static constexpr std::uint32_t kWindow = 2;  // one on the screen, one on its way
+    struct Sent {
+        std::uint32_t seq;
+        std::uint64_t atUs;
+    };
+    void stage(OutgoingFrame frame);
+    protocol::Stats withConnection(protocol::Stats stats) const;
+
+    std::deque<std::string> texts_;
+    stream::FrameMailbox<OutgoingFrame> mailbox_;
+    std::deque<OutgoingFrame> requested_;
+    std::optional<OutgoingFrame> staged_;  // leaves once texts_ is empty: its stream.info and reply stand there
+    std::optional<protocol::StreamInfo> info_;
+    std::optional<protocol::Stats> stats_;
+    std::deque<Sent> waiting_;  // frames of the stream only
+    std::uint32_t window_ = kWindow, sent_ = 0;
+    std::uint64_t sentBytes_ = 0;
+    double rttMs_ = 0.0;
+};
+
+}  // namespace caustream::session

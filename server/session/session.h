@@ -1,0 +1,57 @@
+// What one viewer asked for: its state document, whole or not at all, with a revision, and the scene it names.
+// Network thread only.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "protocol/patch.h"
+#include "scene/scene.h"
+
+namespace caustream::session {
+
+// A change that decoded, and the scene with its lights and materials; commit() makes it so.
+struct Proposal {
+    protocol::Applied applied;
+    std::shared_ptr<const scene::Scene> base;      // as the file has it
+    std::shared_ptr<const scene::Scene> resolved;  // with the document's overrides
+};
+
+class Session {
+   public:
+    Session(std::string id, const protocol::Limits& limits, bool strict)
+        : id_(std::move(id)), limits_(limits), strict_(strict) {}
+
+    // The document with `patch` merged in, checked; this session is as before.
+    tl::expected<protocol::Applied, protocol::DecodeError> apply(const protocol::Json& patch) const;
+
+    // Checks `applied` against the scene it names. The resolved scene is the one before where nothing in it changed: the
+    // renderer's cached light holds.
+    tl::expected<Proposal, protocol::DecodeError> propose(protocol::Applied applied,
+                                                          std::shared_ptr<const scene::Scene> base) const;
+
+    // True if the scene is another one than before.
+    bool commit(Proposal proposal);
+
+    const std::string& id() const { return id_; }
+    std::uint32_t rev() const { return rev_; }
+    const protocol::State& state() const { return current_.applied.state; }
+    const protocol::Json& document() const { return current_.applied.document; }
+    const std::shared_ptr<const scene::Scene>& base() const { return current_.base; }
+    const std::shared_ptr<const scene::Scene>& resolved() const { return current_.resolved; }
+    bool strict() const { return strict_; }
+
+    // Of the newest input whose pose is in the document; 0: none.
+    std::uint32_t inputSeq = 0;
+    std::uint64_t inputClientUs = 0;
+
+   private:
+    std::string id_;
+    protocol::Limits limits_;
+    bool strict_;
+    std::uint32_t rev_ = 0;
+    Proposal current_{.applied = {.document = protocol::Json::object()}};
+};
+
+}  // namespace caustream::session
