@@ -1,0 +1,377 @@
+#include "net/websocket_server.h"
+
+#include <arpa/inet.h>
+#include <libwebsockets.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <utility>
+
+#include "error.h"
+#include "log.h"
+#include "protocol/messages.h"
+
+static_assert(caustream::stream::kSocketHeadroom >= LWS_PRE, "libwebsockets writes its framing before the payload");
+
+namespace caustream::net {
+namespace {
+
+constexpr std::size_t kReceiveBytes = 64u << 10;  // per read: larger than the default, as chunks are
+constexpr std::size_t kSendBytes = 4u << 20;      // per write: below it every frame goes out in one piece, uncopied
+constexpr int kTickUs = 250'000;
+constexpr int kCloseS = 5;  // for the far side to take what is left before its socket is dropped
+
+// Fails with the system's own words where libwebsockets would only say that it could not.
+void probePort(const ServerOptions& options) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(options.port));
+    if (inet_pton(AF_INET, options.bind.c_str(), &address.sin_addr) != 1) {
+        throw Error("bind address; '" + options.bind + "' is not an IPv4 address; try 127.0.0.1 or 0.0.0.0");
+    }
+    const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int yes = 1;
+    setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    const int result = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    const int problem = errno;
+    const bool listens = result == 0 && listen(probe, 1) == 0;
+    const int listenProblem = errno;
+    close(probe);
+    if (!listens) {
+        throw Error(std::string(std::strerror(result == 0 ? listenProblem : problem)) + "; " + options.bind + ":" +
+                    std::to_string(options.port) + "; stop the program that holds the port, or pass --port 0 for a free one");
+    }
+}
+
+void logLine(int level, const char* text) {
+    std::string_view line = text;
+    while (line.ends_with('\n')) {
+        line.remove_suffix(1);
+    }
+    (level & LLL_ERR ? log::warning("libwebsockets") : log::debug("libwebsockets")).with("message", line);
+}
+
+std::string header(lws* socket, lws_token_indexes token) {
+    const int length = lws_hdr_total_length(socket, token);
+    if (length <= 0) {
+        return {};
+    }
+    std::string value(static_cast<std::size_t>(length) + 1, '\0');
+    const int copied = lws_hdr_copy(socket, value.data(), length + 1, token);
+    value.resize(copied > 0 ? static_cast<std::size_t>(copied) : 0);
+    return value;
+}
+
+struct HttpExchange {  // libwebsockets' memory, zeroed; the body is ours until the exchange ends
+    std::string* body;
+};
+
+void endExchange(HttpExchange* exchange) {
+    if (exchange) {
+        delete std::exchange(exchange->body, nullptr);
+    }
+}
+
+bool addHeader(lws* socket, std::string_view name, std::string_view value, unsigned char** at, unsigned char* end) {
+    return lws_add_http_header_by_name(socket, reinterpret_cast<const unsigned char*>(std::string(name).c_str()),
+                                       reinterpret_cast<const unsigned char*>(value.data()),
+                                       static_cast<int>(value.size()), at, end) == 0;
+}
+
+int respond(lws* socket, HttpExchange* exchange, HttpResponse response) {
+    unsigned char buffer[LWS_PRE + 4096];
+    unsigned char *start = buffer + LWS_PRE, *at = start, *end = buffer + sizeof buffer;
+    const bool good =
+        lws_add_http_common_headers(socket, static_cast<unsigned>(response.status), response.contentType.c_str(),
+                                    response.body.size(), &at, end) == 0 &&
+        addHeader(socket, "cache-control:", response.etag.empty() ? "no-store" : "no-cache", &at, end) &&
+        (response.etag.empty() || addHeader(socket, "etag:", response.etag, &at, end)) &&
+        addHeader(socket, "content-security-policy:", contentSecurityPolicy(), &at, end) &&
+        addHeader(socket, "x-content-type-options:", "nosniff", &at, end) &&
+        addHeader(socket, "referrer-policy:", "no-referrer", &at, end) &&
+        lws_finalize_write_http_header(socket, start, &at, end) == 0;
+    if (!good) {
+        return -1;
+    }
+    if (response.body.empty()) {
+        return lws_http_transaction_completed(socket) ? -1 : 0;
+    }
+    endExchange(exchange);
+    exchange->body = new std::string(std::string(LWS_PRE, '\0') + response.body);
+    lws_callback_on_writable(socket);
+    return 0;
+}
+
+int writeBody(lws* socket, HttpExchange* exchange) {
+    if (!exchange->body) {
+        return 0;
+    }
+    const int size = static_cast<int>(exchange->body->size() - LWS_PRE);
+    const int sent = lws_write(socket, reinterpret_cast<unsigned char*>(exchange->body->data()) + LWS_PRE,
+                               static_cast<std::size_t>(size), LWS_WRITE_HTTP_FINAL);
+    endExchange(exchange);
+    return sent < size || lws_http_transaction_completed(socket) ? -1 : 0;
+}
+
+}  // namespace
+
+struct WebSocketServer::Timer {
+    lws_sorted_usec_list_t entry{};
+    WebSocketServer* server = nullptr;
+
+    static void fire(lws_sorted_usec_list_t* entry) {
+        Timer* timer = reinterpret_cast<Timer*>(entry);  // entry is the first member
+        try {
+            timer->server->endpoint_.tick();
+        } catch (const std::exception& problem) {
+            log::error("tick").with("message", problem.what());
+        }
+        lws_sul_schedule(timer->server->context_, 0, entry, fire, kTickUs);
+    }
+};
+
+struct WebSocketServer::Callbacks {
+    static WebSocketServer& server(lws* socket) {
+        return *static_cast<WebSocketServer*>(lws_context_user(lws_get_context(socket)));
+    }
+
+    // Nothing may be thrown into the C library; whoever caused it loses the connection.
+    template <typename Body>
+    static int guarded(Body body) {
+        try {
+            return body();
+        } catch (const std::exception& problem) {
+            log::error("network").with("message", problem.what());
+            return -1;
+        }
+    }
+
+    static int http(lws* socket, lws_callback_reasons reason, void* user, void* in, std::size_t length) {
+        HttpExchange* exchange = static_cast<HttpExchange*>(user);
+        switch (reason) {
+            case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+                return guarded([&] { return server(socket).runPosted(), 0; });
+            case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:  // an upgrade that does not name our subprotocol
+                lws_return_http_status(socket, 400, "Sec-WebSocket-Protocol must be caustream.v1");
+                return -1;
+            case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+                return guarded([&] { return server(socket).refuse(socket, true); });
+            case LWS_CALLBACK_HTTP:
+                return guarded([&] {
+                    if (const int refused = server(socket).refuse(socket, false)) {
+                        return refused;
+                    }
+                    const HttpRequest request{std::string(static_cast<const char*>(in)),
+                                              header(socket, WSI_TOKEN_HTTP_IF_NONE_MATCH)};
+                    return respond(socket, exchange, server(socket).endpoint_.http(request));
+                });
+            case LWS_CALLBACK_HTTP_WRITEABLE: return guarded([&] { return writeBody(socket, exchange); });
+            case LWS_CALLBACK_CLOSED_HTTP:
+            case LWS_CALLBACK_HTTP_DROP_PROTOCOL: endExchange(exchange); return 0;
+            default: return lws_callback_http_dummy(socket, reason, user, in, length);
+        }
+    }
+
+    static int webSocket(lws* socket, lws_callback_reasons reason, void* user, void* in, std::size_t length) {
+        Connection** slot = static_cast<Connection**>(user);
+        switch (reason) {
+            case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+                return guarded([&] {
+                    const std::string path = header(socket, WSI_TOKEN_GET_URI);
+                    const bool page = sameHost(header(socket, WSI_TOKEN_ORIGIN), header(socket, WSI_TOKEN_HOST));
+                    if (path == "/ws" && page) {
+                        return 0;
+                    }
+                    lws_return_http_status(socket, page ? 404 : 403, page ? "The WebSocket is at /ws" : "Origin not allowed");
+                    return -1;
+                });
+            case LWS_CALLBACK_ESTABLISHED:
+                return guarded([&] {
+                    *slot = new Connection(socket, server(socket).nextConnection_++);
+                    server(socket).endpoint_.opened(**slot);
+                    return 0;
+                });
+            case LWS_CALLBACK_RECEIVE:
+                return guarded([&] {
+                    const bool going = server(socket).receive(
+                        **slot, {static_cast<const char*>(in), length}, lws_frame_is_binary(socket),
+                        lws_is_first_fragment(socket), lws_is_final_fragment(socket), lws_remaining_packet_payload(socket));
+                    return going ? 0 : -1;
+                });
+            case LWS_CALLBACK_SERVER_WRITEABLE: return guarded([&] { return server(socket).write(**slot); });
+            case LWS_CALLBACK_CLOSED:
+                if (slot && *slot) {
+                    guarded([&] { return server(socket).endpoint_.closed(**slot), 0; });
+                    delete std::exchange(*slot, nullptr);
+                }
+                return 0;
+            case LWS_CALLBACK_EVENT_WAIT_CANCELLED: return 0;  // the HTTP protocol runs what was posted
+            default: return lws_callback_http_dummy(socket, reason, user, in, length);
+        }
+    }
+};
+
+void Connection::requestWrite() { lws_callback_on_writable(socket_); }
+
+void Connection::close(std::uint16_t code, std::string reason) {
+    if (closing()) {
+        return;
+    }
+    closeCode_ = code;
+    closeReason_ = std::move(reason);
+    partial_.clear();
+    lws_set_timeout(socket_, PENDING_TIMEOUT_CLOSE_SEND, kCloseS);
+    requestWrite();
+}
+
+WebSocketServer::WebSocketServer(const ServerOptions& options, Endpoint& endpoint)
+    : options_(options), endpoint_(endpoint), timer_(std::make_unique<Timer>()) {
+    probePort(options_);
+    lws_set_log_level(LLL_ERR | LLL_WARN, logLine);
+
+    // The first protocol is what a socket speaks that names none: plain HTTP.
+    static const lws_protocols protocols[] = {
+        {"http", Callbacks::http, sizeof(HttpExchange), kReceiveBytes, 0, nullptr, kSendBytes},
+        {protocol::kSubprotocol.data(), Callbacks::webSocket, sizeof(Connection*), kReceiveBytes, 0, nullptr, kSendBytes},
+        {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
+    static const lws_retry_bo_t retry = {.secs_since_valid_ping = static_cast<std::uint16_t>(options_.pingS),
+                                         .secs_since_valid_hangup = static_cast<std::uint16_t>(options_.deadS)};
+    lws_context_creation_info info{};
+    info.iface = options_.bind == "0.0.0.0" ? nullptr : options_.bind.c_str();
+    info.port = options_.port;
+    info.protocols = protocols;
+    info.extensions = nullptr;
+    info.alpn = "http/1.1";
+    info.pt_serv_buf_size = kReceiveBytes;
+    info.max_http_header_data = 16384;
+    info.retry_and_idle_policy = &retry;
+    info.user = this;
+    info.gid = static_cast<gid_t>(-1);
+    info.uid = static_cast<uid_t>(-1);
+    info.options = LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_DISABLE_IPV6 |
+                   LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+    context_ = lws_create_context(&info);
+    lws_vhost* vhost = context_ ? lws_create_vhost(context_, &info) : nullptr;
+    if (!vhost) {
+        if (context_) {
+            lws_context_destroy(context_);
+        }
+        throw Error("network; libwebsockets cannot listen on " + options_.bind + ":" + std::to_string(options_.port) +
+                    "; pass --port 0 for a free port");
+    }
+    port_ = lws_get_vhost_listen_port(vhost);
+    timer_->server = this;
+    lws_sul_schedule(context_, 0, &timer_->entry, Timer::fire, kTickUs);
+}
+
+WebSocketServer::~WebSocketServer() {
+    lws_sul_schedule(context_, 0, &timer_->entry, nullptr, LWS_SET_TIMER_USEC_CANCEL);
+    lws_context_destroy(context_);
+}
+
+void WebSocketServer::run() {
+    const auto stopping = [this] {
+        const std::lock_guard lock(mutex_);
+        return stopping_;
+    };
+    while (!stopping() && lws_service(context_, 0) >= 0) {
+    }
+}
+
+void WebSocketServer::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    lws_cancel_service(context_);
+}
+
+void WebSocketServer::post(std::function<void()> task) {
+    {
+        const std::lock_guard lock(mutex_);
+        posted_.push_back(std::move(task));
+    }
+    lws_cancel_service(context_);
+}
+
+void WebSocketServer::runPosted() {
+    std::vector<std::function<void()>> tasks;
+    {
+        const std::lock_guard lock(mutex_);
+        tasks.swap(posted_);
+    }
+    for (const auto& task : tasks) {
+        task();
+    }
+}
+
+bool WebSocketServer::receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final,
+                              std::size_t remaining) {
+    if (connection.closing()) {
+        return true;
+    }
+    if (first) {
+        connection.partial_.clear();
+    }
+    // Memory follows the bytes that came, but a message that will not fit is refused at its first piece.
+    const std::size_t limit = binary ? options_.maxBinaryBytes : options_.maxTextBytes;
+    if (connection.partial_.size() + piece.size() + remaining > limit) {
+        connection.close(static_cast<std::uint16_t>(protocol::CloseCode::TooLarge),
+                         "a message may hold " + std::to_string(limit) + " bytes");
+        return true;
+    }
+    const bool whole = final && remaining == 0;
+    if (whole && connection.partial_.empty()) {
+        endpoint_.received(connection, piece, binary);
+        return true;
+    }
+    connection.partial_.append(piece);
+    if (whole) {
+        const std::string message = std::exchange(connection.partial_, {});
+        endpoint_.received(connection, message, binary);
+    }
+    return true;
+}
+
+int WebSocketServer::write(Connection& connection) {
+    if (std::optional<session::Outgoing> message = endpoint_.next(connection)) {
+        const std::size_t size = message->buffer.size();
+        const int sent = lws_write(connection.socket_, message->buffer.data(), size,
+                                   message->binary ? LWS_WRITE_BINARY : LWS_WRITE_TEXT);
+        if (sent < static_cast<int>(size)) {
+            return -1;
+        }
+        connection.requestWrite();
+        return 0;
+    }
+    if (!connection.closing()) {
+        return 0;
+    }
+    std::string& reason = connection.closeReason_;
+    reason.resize(std::min<std::size_t>(reason.size(), 120));  // a close frame holds 125 bytes with its code
+    lws_close_reason(connection.socket_, static_cast<lws_close_status>(connection.closeCode_),
+                     reinterpret_cast<unsigned char*>(reason.data()), reason.size());
+    return -1;
+}
+
+int WebSocketServer::refuse(lws* socket, bool upgrade) const {
+    if (upgrade && header(socket, WSI_TOKEN_UPGRADE) != "websocket") {  // h2c would open the HTTP/2 code
+        lws_return_http_status(socket, 400, "Upgrade must be websocket");
+        return -1;
+    }
+    if (options_.checkHost && !isLocalName(header(socket, WSI_TOKEN_HOST))) {
+        lws_return_http_status(socket, 403, "Host not allowed");
+        return -1;
+    }
+    if (!upgrade && lws_hdr_total_length(socket, WSI_TOKEN_GET_URI) <= 0) {
+        lws_return_http_status(socket, 405, "Only GET is answered");
+        return -1;
+    }
+    return 0;
+}
+
+}  // namespace caustream::net

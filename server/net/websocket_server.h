@@ -1,0 +1,100 @@
+// The one port: a WebSocket endpoint at /ws and a few HTTP pages, on libwebsockets. Everything here but post() belongs to
+// the network thread, which is the one inside run().
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "net/http.h"
+#include "session/outbox.h"
+
+struct lws;
+struct lws_context;
+
+namespace caustream::net {
+
+class Connection;
+
+// What the owner of the port does with what arrives. Called on the network thread.
+class Endpoint {
+   public:
+    virtual ~Endpoint() = default;
+    virtual void opened(Connection& connection) = 0;
+    virtual void received(Connection& connection, std::string_view message, bool binary) = 0;
+    // The socket takes one message; nothing: it has all there is. More is asked for until then.
+    virtual std::optional<session::Outgoing> next(Connection& connection) = 0;
+    virtual void closed(Connection& connection) = 0;
+    virtual void tick() = 0;  // four times a second
+    virtual HttpResponse http(const HttpRequest& request) = 0;
+};
+
+// One WebSocket. Lives from opened() to closed().
+class Connection {
+   public:
+    Connection(lws* socket, std::uint64_t id) : socket_(socket), id_(id) {}
+
+    std::uint64_t id() const { return id_; }
+    void requestWrite();
+
+    // Sends what next() still gives, then closes; what arrives from now on is dropped. The first call wins.
+    void close(std::uint16_t code, std::string reason);
+    bool closing() const { return closeCode_ != 0; }
+
+   private:
+    friend class WebSocketServer;
+    lws* socket_;
+    std::uint64_t id_;
+    std::string partial_;  // of a message that arrives in pieces
+    std::uint16_t closeCode_ = 0;
+    std::string closeReason_;
+};
+
+struct ServerOptions {
+    std::string bind = "127.0.0.1";
+    int port = 0;  // 0: any free one
+    std::size_t maxTextBytes = 64u << 10, maxBinaryBytes = 1u << 20;
+    int pingS = 15, deadS = 30;
+    bool checkHost = true;  // only this machine's own names in Host: a page elsewhere cannot rebind its name to us
+};
+
+class WebSocketServer {
+   public:
+    // Binds; throws Error when the port is taken or the address is not this machine's.
+    WebSocketServer(const ServerOptions& options, Endpoint& endpoint);
+    ~WebSocketServer();
+
+    int port() const { return port_; }
+    void run();   // until stop()
+    void stop();  // any thread
+
+    // Runs `task` on the network thread, soon. Any thread.
+    void post(std::function<void()> task);
+
+    struct Callbacks;  // libwebsockets calls into it
+
+   private:
+    void runPosted();
+    bool receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final, std::size_t remaining);
+    int write(Connection& connection);
+    int refuse(lws* socket, bool upgrade) const;
+
+    ServerOptions options_;
+    Endpoint& endpoint_;
+    lws_context* context_ = nullptr;
+    int port_ = 0;
+    std::uint64_t nextConnection_ = 1;
+
+    std::mutex mutex_;
+    std::vector<std::function<void()>> posted_;  // guarded by mutex_
+    bool stopping_ = false;                      // guarded by mutex_
+
+    struct Timer;
+    std::unique_ptr<Timer> timer_;
+};
+
+}  // namespace caustream::net
