@@ -1,0 +1,74 @@
+#include "config.h"
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "error.h"
+
+namespace caustream {
+namespace {
+
+constexpr const char* kAbout = R"(Renders spectral caustics and streams them to viewers over one WebSocket.
+
+  caustream-server                       serve on http://127.0.0.1:9720/ ; open it in a browser
+  caustream-server --port 0              on any free port; the last line of output names it
+  caustream-server --gpu list            show the GPUs there are
+  caustream-server --bind 0.0.0.0 --token-file secret.txt   let other machines in, with a token
+
+Prints one line "ready http://..." on standard output once frames can be asked for; logs go to standard error.
+SIGTERM or Ctrl-C tells the viewers and ends.)";
+
+std::string readToken(const std::string& path) {
+    std::ifstream file(path);
+    std::string token;
+    if (!file || !std::getline(file, token)) {
+        throw Error("token file; cannot read " + path + "; check the path, its first line is the token");
+    }
+    while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) {
+        token.pop_back();
+    }
+    if (token.size() < 16) {
+        throw Error("token file; the token in " + path + " is shorter than 16 characters; try: openssl rand -hex 32 > " + path);
+    }
+    return token;
+}
+
+}  // namespace
+
+std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
+    Config config;
+    std::string level = "info", tokenFile;
+    CLI::App app(kAbout, "caustream-server");
+    app.add_option("--port", config.port, "TCP port; 0 takes any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+    app.add_option("--bind", config.bind, "IPv4 address to listen on; another than loopback needs --token-file")->capture_default_str();
+    app.add_option("--token-file", tokenFile, "file whose first line viewers must present");
+    app.add_option("--gpu", config.gpu, "auto, software, list, an index of the list, or part of a name")->capture_default_str();
+    app.add_flag("--require-hardware", config.requireHardware, "fail rather than render in software");
+    app.add_option("--shader-dir", config.shaderDir, "read shaders from this folder, and again when they change")
+        ->check(CLI::ExistingDirectory);
+    app.add_option("--log-level", level, "debug, info, warning or error")->capture_default_str();
+    app.add_option("--max-sessions", config.maxSessions, "viewers at once")->check(CLI::Range(1, 64))->capture_default_str();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return std::nullopt;
+    } catch (const CLI::ParseError& problem) {
+        throw Error(std::string("command line; ") + problem.what() + "; try --help");
+    }
+    if (const auto known = log::levelFromName(level)) {
+        config.logLevel = *known;
+    } else {
+        throw Error("command line; --log-level " + level + "; try debug, info, warning or error");
+    }
+    if (!tokenFile.empty()) {
+        config.token = readToken(tokenFile);
+    }
+    if (!config.bind.starts_with("127.") && config.token.empty()) {
+        throw Error("command line; --bind " + config.bind + " lets other machines in; give --token-file, or stay on 127.0.0.1");
+    }
+    return config;
+}
+
+}  // namespace caustream

@@ -1,0 +1,24 @@
+// What the command line says.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "log.h"
+
+namespace caustream {
+
+struct Config {
+    std::string bind = "127.0.0.1";
+    int port = 9720;              // 0: any free one
+    std::string token;            // asked for in hello; empty: none
+    std::string gpu = "auto";     // or "list"
+    bool requireHardware = false;
+    std::string shaderDir;        // empty: the shaders in the program
+    log::Level logLevel = log::Level::Info;
+    int maxSessions = 8;
+};
+
+// Nothing: --help was asked for and printed. Throws Error for options that make no sense.
+std::optional<Config> parseCommandLine(int argc, const char* const* argv);
+
+}  // namespace caustream

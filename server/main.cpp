@@ -1,0 +1,55 @@
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "config.h"
+#include "error.h"
+#include "gl/context.h"
+#include "service.h"
+
+namespace {
+
+// Before any thread starts, so that all inherit it and only sigwait() sees these.
+sigset_t blockStopSignals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    return signals;
+}
+
+void printGpus() {
+    for (const caustream::gl::GpuInfo& gpu : caustream::gl::listGpus()) {
+        std::printf("%d  %s%s\n", gpu.index, gpu.name.c_str(), gpu.software ? "  (software)" : "");
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const auto config = caustream::parseCommandLine(argc, argv);
+        if (!config) {
+            return 0;
+        }
+        if (config->gpu == "list") {
+            printGpus();
+            return 0;
+        }
+        caustream::log::setLevel(config->logLevel);
+        const sigset_t stopSignals = blockStopSignals();
+
+        caustream::Service service(*config);
+        std::printf("ready http://%s:%d/\n", config->bind.c_str(), service.port());
+        std::fflush(stdout);
+
+        int signal = 0;
+        sigwait(&stopSignals, &signal);
+        caustream::log::info("stopping").with("signal", signal);
+        return 0;
+    } catch (const std::exception& problem) {
+        std::fprintf(stderr, "caustream-server: %s\n", problem.what());
+        return 1;
+    }
+}

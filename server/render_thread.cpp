@@ -1,0 +1,154 @@
+#include "render_thread.h"
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <optional>
+
+#include "gl/context.h"
+#include "gl/shader_library.h"
+#include "log.h"
+#include "render/pipeline.h"
+#include "session/clock.h"
+
+namespace caustream {
+namespace {
+
+constexpr int kEncoderThreads = 2;  // one still as PNG must not hold up another viewer's stream
+
+std::string hashText(std::uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& frame, stream::Encoded&& encoded) {
+    session::OutgoingFrame outgoing;
+    outgoing.header = frameHeader(*job.shown.view, frame);
+    protocol::FrameHeader& header = outgoing.header;
+    header.flags = job.still ? protocol::kFrameStill : 0u;
+    header.inputSeq = job.shown.inputSeq;
+    header.stateRev = job.shown.rev;
+    header.clientUs = job.shown.clientUs;
+    header.holdUs = static_cast<std::uint32_t>(job.startedUs - job.shown.changedUs);
+    header.encodeUs = static_cast<std::uint32_t>(encoded.encodeMs * 1e3);
+    header.payloadLen = static_cast<std::uint32_t>(encoded.buffer.size() - protocol::kFrameHeaderBytes);
+    outgoing.info = streamInfo(*job.shown.view, frame);
+    outgoing.stats = frameStats(frame);
+    outgoing.stats.encodeMs = encoded.encodeMs;
+    outgoing.requestId = job.requestId;
+    outgoing.mapHash = hashText(frame.mapHash);
+    outgoing.buffer = std::move(encoded.buffer);
+    return outgoing;
+}
+
+}  // namespace
+
+struct RenderThread::Gpu {
+    std::unique_ptr<gl::Context> context;
+    gl::ShaderLibrary shaders;
+    render::Pipeline pipeline;
+
+    explicit Gpu(const Config& config)
+        : context(gl::Context::create({.gpu = config.gpu, .requireHardware = config.requireHardware})),
+          shaders(config.shaderDir),
+          pipeline(*context, shaders) {}
+};
+
+RenderThread::RenderThread(const Config& config, std::function<void(Delivery&&)> deliver)
+    : config_(config), deliver_(std::move(deliver)), encoders_(kEncoderThreads) {
+    std::promise<void> warm;
+    std::future<void> warmed = warm.get_future();
+    thread_ = std::thread([this, &warm] { work(warm); });
+    try {
+        warmed.get();
+    } catch (...) {
+        thread_.join();
+        throw;
+    }
+}
+
+RenderThread::~RenderThread() {
+    schedule([this](Scheduler&) { stopping_ = true; });
+    thread_.join();
+}
+
+void RenderThread::collect() {
+    schedule([this](Scheduler&) { collecting_ = true; });
+}
+
+void RenderThread::work(std::promise<void>& warm) {
+    std::optional<Gpu> gpu;
+    try {
+        const std::uint64_t start = session::nowUs();
+        gpu.emplace(config_);
+        gpuName_ = gpu->context->renderer();
+        if (!gpu->context->warning().empty()) {
+            log::warning("gpu").with("message", gpu->context->warning());
+        }
+        gpu->pipeline.warmUp();
+        log::info("gpu").with("renderer", gpuName_).with("warm_ms", (session::nowUs() - start) / 1000);
+    } catch (...) {
+        gpu.reset();
+        warm.set_exception(std::current_exception());
+        return;
+    }
+    warm.set_value();
+    serve(*gpu);
+}
+
+void RenderThread::serve(Gpu& gpu) {
+    std::unique_lock lock(mutex_);
+    while (!stopping_) {
+        std::uint64_t wakeUs = 0;
+        const std::uint64_t now = session::nowUs();
+        if (std::optional<FrameJob> job = scheduler_.next(now, wakeUs)) {
+            lock.unlock();
+            draw(gpu, std::move(*job));
+            lock.lock();
+        } else if (std::exchange(collecting_, false)) {
+            lock.unlock();
+            gpu.pipeline.collect();
+            lock.lock();
+        } else if (wakeUs != 0) {
+            wake_.wait_for(lock, std::chrono::microseconds(wakeUs - now));
+        } else {
+            wake_.wait(lock);
+        }
+    }
+}
+
+void RenderThread::draw(Gpu& gpu, FrameJob job) {
+    busySinceUs_ = job.startedUs;
+    std::string error;
+    render::Frame frame;
+    try {
+        if (!config_.shaderDir.empty() && gpu.shaders.reloadIfChanged()) {
+            log::info("shaders").with("message", "reloaded");
+        }
+        render::Request request = job.shown.view->request;
+        request.still = job.still;
+        frame = gpu.pipeline.run(request);
+        ++frames_;
+        renderMsTotal_ = renderMsTotal_ + frame.stats.renderMs;
+    } catch (const std::exception& problem) {
+        ++failures_;
+        error = problem.what();
+        log::error("render").with("message", error);
+    }
+    busySinceUs_ = 0;
+    if (!error.empty()) {
+        deliver_({std::move(job), {}, std::move(error)});
+        return;
+    }
+    const stream::EncodeSettings settings = job.shown.view->encode;
+    encoders_.submit(std::move(frame), settings, [this, job = std::move(job)](render::Frame&& drawn, stream::Encoded&& encoded) {
+        if (!encoded.error.empty()) {
+            deliver_({job, {}, std::move(encoded.error)});
+            return;
+        }
+        deliver_({job, outgoingFrame(job, drawn, std::move(encoded)), {}});
+    });
+}
+
+}  // namespace caustream

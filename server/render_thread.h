@@ -1,0 +1,77 @@
+// The thread with the GL context: asks the scheduler, runs the pipeline, hands frames to the encoders.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "config.h"
+#include "scheduler.h"
+#include "session/outbox.h"
+#include "stream/encode_pool.h"
+
+namespace caustream {
+
+struct Delivery {
+    FrameJob job;
+    session::OutgoingFrame frame;
+    std::string error;  // a sentence; the frame is empty then
+};
+
+class RenderThread {
+   public:
+    // `deliver` is called on an encoder thread, or on this one for a frame that failed. Must not throw.
+    // Returns once every shader is compiled; throws what went wrong with the GPU.
+    RenderThread(const Config& config, std::function<void(Delivery&&)> deliver);
+    ~RenderThread();
+
+    // Calls change(scheduler) under the lock and lets the render thread look again. Any thread.
+    template <typename Change>
+    auto schedule(Change&& change) {
+        const Notify notify{wake_};
+        const std::lock_guard lock(mutex_);
+        return change(scheduler_);
+    }
+
+    // The renderer's caches of scenes that no one shows are dropped when it is next idle. Any thread.
+    void collect();
+
+    const std::string& gpuName() const { return gpuName_; }
+    std::uint64_t busySinceUs() const { return busySinceUs_; }  // 0: idle
+    std::uint64_t frames() const { return frames_; }
+    std::uint64_t failures() const { return failures_; }
+    double renderMsTotal() const { return renderMsTotal_; }
+
+   private:
+    struct Gpu;
+    struct Notify {  // after the lock is released, so that the woken thread finds it free
+        std::condition_variable& wake;
+        ~Notify() { wake.notify_one(); }
+    };
+    void work(std::promise<void>& warm);
+    void serve(Gpu& gpu);
+    void draw(Gpu& gpu, FrameJob job);
+
+    Config config_;
+    std::function<void(Delivery&&)> deliver_;
+    std::string gpuName_;  // written before the constructor returns
+
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    Scheduler scheduler_;     // guarded by mutex_
+    bool stopping_ = false;   // guarded by mutex_
+    bool collecting_ = false; // guarded by mutex_
+
+    std::atomic<std::uint64_t> busySinceUs_{0}, frames_{0}, failures_{0};
+    std::atomic<double> renderMsTotal_{0.0};
+
+    stream::EncodePool encoders_;
+    std::thread thread_;
+};
+
+}  // namespace caustream

@@ -1,0 +1,170 @@
+#include "resolve_request.h"
+
+#include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
+#include <string>
+#include <utility>
+
+#include "render/pipeline.h"
+#include "session/scene_overrides.h"
+
+namespace caustream {
+namespace {
+
+using protocol::Encoding;
+using protocol::ErrorCode;
+using protocol::Sample;
+using protocol::Target;
+
+constexpr int kJpegQuality = 90;  // 4:4:4; below it a dispersed caustic's thin colours wash out
+
+tl::unexpected<protocol::DecodeError> unsupported(std::string message, std::string field) {
+    return tl::unexpected(
+        protocol::DecodeError{.code = ErrorCode::Unsupported, .message = std::move(message), .field = std::move(field)});
+}
+
+std::string passList() {
+    std::string names;
+    for (const std::string& name : render::passNames()) {
+        names += (names.empty() ? "" : ", ") + name;
+    }
+    return names;
+}
+
+tl::expected<void, protocol::DecodeError> checkStream(const protocol::StreamState& stream) {
+    if (stream.encoding == Encoding::Zstd) {
+        return unsupported("zstd is not built in; ask for raw", "stream.encoding");
+    }
+    if (stream.target == Target::Pass && std::ranges::find(render::passNames(), stream.pass) == render::passNames().end()) {
+        return unsupported("there is no pass '" + stream.pass + "' to show; there are: " + passList(), "stream.target");
+    }
+    if (stream.target == Target::Spectral) {
+        if (stream.encoding != Encoding::Raw) {
+            return unsupported("the spectral map is sent raw", "stream.encoding");
+        }
+        if (stream.sample == Sample::U8) {
+            return unsupported("the spectral map has f16 or f32 samples", "stream.sample");
+        }
+        return {};
+    }
+    if (stream.encoding != Encoding::Raw && stream.sample != Sample::U8) {
+        return unsupported("JPEG and PNG hold u8 samples; ask for encoding raw", "stream.sample");
+    }
+    if (stream.sample == Sample::F16) {
+        return unsupported("a picture has u8 or f32 samples", "stream.sample");
+    }
+    return {};
+}
+
+Sample sampleOf(const render::Frame& frame) {
+    switch (frame.sample) {
+        case render::Sample::U8: return Sample::U8;
+        case render::Sample::F16: return Sample::F16;
+        case render::Sample::F32: break;
+    }
+    return Sample::F32;
+}
+
+render::Transport transportOf(const protocol::TransportState& wanted) {
+    return {.wavelengths = wanted.wavelengths,
+            .wavelengthsNm = wanted.wavelengthsNm,
+            .photonGrid = wanted.photonGrid,
+            .mapSize = wanted.mapSize,
+            .backSteps = wanted.backSteps,
+            .receiverSteps = wanted.receiverSteps,
+            .gapFill = wanted.gapFill,
+            .filter = wanted.filter,
+            .forceDispersive = wanted.forceDispersive};
+}
+
+}  // namespace
+
+tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
+                                                         std::shared_ptr<const scene::Scene> scene) {
+    const protocol::StreamState& stream = state.stream;
+    if (auto checked = checkStream(stream); !checked) {
+        return tl::unexpected(std::move(checked.error()));
+    }
+    auto camera = session::cameraOf(*scene, state);
+    if (!camera) {
+        return tl::unexpected(std::move(camera.error()));
+    }
+    View view;
+    view.stream = stream;
+    view.encode = {.encoding = stream.encoding, .jpegQuality = stream.jpegQuality.value_or(kJpegQuality)};
+    render::Request& request = view.request;
+    request.scene = std::move(scene);
+    request.camera = std::move(*camera);
+    if (state.camera.exposureEv) {
+        request.exposureEv = static_cast<float>(*state.camera.exposureEv);
+    }
+    request.transport = transportOf(state.transport);
+    request.target = stream.target == Target::Composite  ? render::Target::Composite
+                     : stream.target == Target::Spectral ? render::Target::Spectral
+                                                         : render::Target::Pass;
+    request.pass = stream.pass;
+    request.sample = stream.sample == Sample::U8    ? render::Sample::U8
+                     : stream.sample == Sample::F16 ? render::Sample::F16
+                                                    : render::Sample::F32;
+    request.wavelengthBands = stream.wavelengthBands;
+    request.width = stream.width;
+    request.height = stream.height;
+    return view;
+}
+
+protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame) {
+    protocol::StreamInfo info;
+    info.target = view.stream.target;
+    info.pass = view.stream.pass;
+    info.encoding = view.stream.encoding;
+    info.sample = sampleOf(frame);
+    info.width = static_cast<std::uint32_t>(frame.width);
+    info.height = static_cast<std::uint32_t>(frame.height);
+    info.bands = static_cast<std::uint32_t>(frame.bands);
+    info.wavelengthsNm = frame.wavelengthsNm;
+    std::copy_n(glm::value_ptr(frame.lightMatrix), info.lightMatrix.size(), info.lightMatrix.begin());
+    info.unit = view.stream.target == Target::Spectral ? "concentration"
+                : frame.sample == render::Sample::U8   ? "sRGB"
+                                                       : "linear";
+    return info;
+}
+
+protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame) {
+    protocol::FrameHeader header;
+    header.target = view.stream.target;
+    header.encoding = view.stream.encoding;
+    header.sample = sampleOf(frame);
+    header.width = static_cast<std::uint16_t>(frame.width);
+    header.height = static_cast<std::uint16_t>(frame.height);
+    header.viewWidth = header.width;
+    header.viewHeight = header.height;
+    header.bands = static_cast<std::uint16_t>(frame.bands);
+    if (view.stream.encoding == Encoding::Jpeg) {
+        header.jpegQuality = static_cast<std::uint8_t>(view.encode.jpegQuality);
+    }
+    header.renderUs = static_cast<std::uint32_t>(frame.stats.renderMs * 1e3);
+    header.rawLen = static_cast<std::uint32_t>(frame.pixels.size());
+    return header;
+}
+
+protocol::Stats frameStats(const render::Frame& frame) {
+    protocol::Stats stats;
+    for (const render::StageTime& stage : frame.stats.stages) {
+        stats.stages.push_back({stage.pass, stage.ms});
+    }
+    for (const render::PlanEntry& entry : frame.stats.plan) {
+        stats.plan.push_back({entry.pass, entry.run, entry.reason});
+    }
+    const render::EnergyLedger& ledger = frame.stats.ledger;
+    if (ledger.onCasters != 0.0) {
+        stats.ledger = protocol::Ledger{ledger.onCasters,       ledger.deposited, ledger.absorbed, ledger.reflected,
+                                        ledger.totalReflection, ledger.rejected,  ledger.leftMap,  ledger.noReceiver};
+    }
+    stats.photons = frame.stats.photons;
+    stats.renderMs = frame.stats.renderMs;
+    stats.exposureEv = frame.stats.exposureEv;
+    stats.warnings = frame.stats.warnings;
+    return stats;
+}
+
+}  // namespace caustream

@@ -1,0 +1,30 @@
+// A viewer's state document -> what the renderer and the encoder are asked for.
+#pragma once
+#include <memory>
+#include <tl/expected.hpp>
+
+#include "protocol/messages.h"
+#include "render/frame.h"
+#include "stream/encoder.h"
+
+namespace caustream {
+
+struct View {
+    render::Request request;
+    stream::EncodeSettings encode;
+    protocol::StreamState stream;
+};
+
+// `scene` already has the document's lights and materials. Errors: a pass there is not, an encoding that cannot hold the
+// target's samples, a camera without a direction.
+tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
+                                                         std::shared_ptr<const scene::Scene> scene);
+
+// What a frame of this view is, for `stream.info`; its epoch is the outbox's.
+protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame);
+
+// Header and statistics of a rendered frame: all but what only the outbox and the scheduler know.
+protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame);
+protocol::Stats frameStats(const render::Frame& frame);
+
+}  // namespace caustream

@@ -1,0 +1,306 @@
+#include "viewer.h"
+
+#include <openssl/crypto.h>
+
+#include <utility>
+
+#include "log.h"
+#include "optics/dispersion.h"
+#include "render/pipeline.h"
+#include "scene/builtin_scenes.h"
+#include "session/clock.h"
+#include "session/random_id.h"
+#include "session/scene_overrides.h"
+#include "session/scene_summary.h"
+
+namespace caustream {
+namespace {
+
+using protocol::CloseCode;
+using protocol::DecodeError;
+using protocol::ErrorCode;
+
+constexpr std::uint64_t kUsPerS = 1'000'000;
+constexpr double kChunksPerS = 2000;                        // credit bounds the bytes, this the smallest of chunks
+constexpr std::size_t kMaxDeferredBytes = 4u << 20;         // while a scene loads
+constexpr std::size_t kMaxWaitingTextBytes = 16u << 20;     // for a client that talks and does not read
+
+DecodeError problem(ErrorCode code, std::string message, std::string field = {}, std::optional<std::uint32_t> id = {}) {
+    return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
+}
+
+// Takes as long for a wrong token as for a right one.
+bool sameToken(const std::string& a, const std::string& b) {
+    return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+}  // namespace
+
+Viewer::Viewer(Desk& desk, net::Connection& connection)
+    : desk_(desk),
+      connection_(connection),
+      texts_(desk.limits.messagesPerS),
+      chunks_(kChunksPerS),
+      openedUs_(session::nowUs()) {}
+
+Viewer::~Viewer() {
+    if (session_) {
+        --desk_.sessions;
+    }
+    if (ready_) {
+        desk_.renderer->schedule([this](Scheduler& scheduler) { scheduler.remove(connection_.id()); });
+        desk_.renderer->collect();
+    }
+}
+
+void Viewer::received(std::string_view message, bool binary) {
+    if (!(binary ? chunks_ : texts_).take(session::nowUs())) {
+        fail(problem(ErrorCode::RateLimited, "more than " + std::to_string(desk_.limits.messagesPerS) + " messages a second"));
+    } else if (!loading_) {
+        handle(message, binary);
+    } else if ((deferredBytes_ += message.size()) > kMaxDeferredBytes) {
+        fail(problem(ErrorCode::TooLarge, "too much was sent while a scene loads"));
+    } else {
+        deferred_.emplace_back(message, binary);
+    }
+}
+
+void Viewer::handle(std::string_view message, bool binary) {
+    if (binary) {
+        chunk(message);
+        return;
+    }
+    const auto decoded = protocol::decodeClientMessage(message, desk_.limits, session_ && session_->strict());
+    if (!decoded) {
+        refuse(decoded.error());
+    } else if (!ready_ && !std::holds_alternative<protocol::Hello>(*decoded)) {
+        refuse(problem(ErrorCode::BadRequest, "the first message is hello", "op"));
+    } else {
+        std::visit([this](const auto& known) { on(known); }, *decoded);
+    }
+}
+
+bool Viewer::admit(const protocol::Hello& hello) {
+    const auto refuseWith = [&](DecodeError error, bool fatal) {
+        error.id = hello.id;
+        fatal ? fail(error) : refuse(error);
+        return false;
+    };
+    if (ready_) {
+        return refuseWith(problem(ErrorCode::BadRequest, "hello was said before", "op"), false);
+    }
+    if (!desk_.config.token.empty() && !sameToken(hello.token.value_or(""), desk_.config.token)) {
+        return refuseWith(problem(ErrorCode::AuthRequired, "this server asks for its token", "token"), true);
+    }
+    if (hello.role == protocol::Role::View || hello.follow) {
+        return refuseWith(problem(ErrorCode::Unsupported, "every viewer has a session of its own",
+                                  hello.follow ? "follow" : "role"), false);
+    }
+    if (desk_.sessions >= desk_.limits.sessions) {
+        return refuseWith(problem(ErrorCode::Busy, "all " + std::to_string(desk_.limits.sessions) + " sessions are taken"), true);
+    }
+    return true;
+}
+
+void Viewer::on(const protocol::Hello& hello) {
+    if (!admit(hello)) {
+        return;
+    }
+    session_.emplace(session::randomId(), desk_.limits, hello.strict);
+    ++desk_.sessions;
+    outbox_.setMaxInflight(hello.maxInflight);
+    const auto withdraw = [this, id = hello.id](DecodeError error) {
+        session_.reset();
+        --desk_.sessions;
+        error.id = id;
+        refuse(error);
+    };
+
+    // A client that comes back brings its document; a scene it had uploaded may have to be uploaded again.
+    protocol::Json patch = hello.resume && hello.resume->state ? *hello.resume->state : protocol::Json::object();
+    std::vector<std::string> missing;
+    const auto applied = session_->apply(patch);
+    if (!applied) {
+        withdraw(applied.error());
+        return;
+    }
+    const protocol::SceneRef& scene = applied->state.scene;
+    if (scene.kind == protocol::SceneRef::Kind::Asset && !desk_.scenes.find(scene)) {
+        missing.push_back(scene.name);
+        patch = {{"stream", applied->document.value("stream", protocol::Json::object())}};
+    }
+    change({.patch = std::move(patch), .done = [this, withdraw, id = hello.id, missing](const auto& error) {
+                if (error) {
+                    withdraw(*error);
+                } else {
+                    welcome(id, missing);
+                }
+            }});
+    log::info("hello").with("connection", connection_.id()).with("client", hello.clientName).with("version", hello.clientVersion);
+}
+
+void Viewer::welcome(std::uint32_t id, std::vector<std::string> missingAssets) {
+    protocol::Welcome message{.id = id, .session = session_->id(), .server = desk_.serverId, .build = CAUSTREAM_VERSION};
+    message.gpu = desk_.renderer->gpuName();
+    message.rev = session_->rev();
+    message.state = session_->document();
+    message.caps = {"jpeg", "png", "raw", "f16", "f32"};
+    for (const scene::BuiltinScene& builtin : scene::builtinScenes()) {
+        message.scenes.emplace_back(builtin.name);
+    }
+    message.passes.assign(render::passNames().begin(), render::passNames().end());
+    message.limits = desk_.limits;
+    for (const optics::GlassPreset& glass : optics::kGlassPresets) {
+        message.glasses.push_back({glass.name, session::onTheWire(glass.dispersion)});
+    }
+    message.missingAssets = std::move(missingAssets);
+    message.heartbeatS = desk_.limits.pingS;
+    send(message);
+}
+
+void Viewer::on(const protocol::Update& update) {
+    change({.patch = update.patch, .done = [this, id = update.id](const std::optional<DecodeError>& error) {
+                if (error) {
+                    DecodeError reply = *error;
+                    reply.id = id;
+                    refuse(reply);
+                } else if (id) {
+                    ok(*id);
+                }
+            }});
+}
+
+void Viewer::on(const protocol::Input& input) {
+    change({.patch = input.patch, .input = input, .done = [this](const std::optional<DecodeError>& error) {
+                if (error) {
+                    refuse(*error);
+                }
+            }});
+}
+
+void Viewer::on(const protocol::StreamStart& start) {
+    wantsStats_ = start.stats;
+    setStreaming(start.id, true);
+}
+
+void Viewer::on(const protocol::StreamPause& pause) { setStreaming(pause.id, false); }
+
+void Viewer::on(const protocol::StreamResume& resume) { setStreaming(resume.id, true); }
+
+void Viewer::setStreaming(std::uint32_t id, bool streaming) {
+    streaming_ = streaming;
+    ok(id);
+    desk_.renderer->schedule([&](Scheduler& scheduler) { scheduler.setStreaming(connection_.id(), streaming); });
+}
+
+void Viewer::on(const protocol::FrameRequest& request) {
+    const bool taken = requestsPending_ < Scheduler::kMaxRequests && desk_.renderer->schedule([&](Scheduler& scheduler) {
+        return scheduler.request(connection_.id(), request.id, request.still);
+    });
+    if (!taken) {
+        refuse(problem(ErrorCode::Busy, std::to_string(Scheduler::kMaxRequests) + " frames are asked for already", {}, request.id));
+        return;
+    }
+    ++requestsPending_;
+}
+
+void Viewer::on(const protocol::Ack& ack) {
+    if (!outbox_.acknowledge(ack, session::nowUs())) {
+        refuse(problem(ErrorCode::OutOfRange, "no frame of this number was sent", "seq"));
+        return;
+    }
+    updateOccupied();
+    connection_.requestWrite();
+}
+
+void Viewer::on(const protocol::Ping& ping) { send(protocol::Pong{ping.tUs, session::nowUs()}); }
+
+std::optional<session::Outgoing> Viewer::next() {
+    std::optional<session::Outgoing> message = outbox_.next(session::nowUs());
+    if (message && message->binary) {
+        updateOccupied();
+    }
+    return message;
+}
+
+void Viewer::updateOccupied() {
+    if (!ready_) {
+        return;
+    }
+    desk_.renderer->schedule([this](Scheduler& scheduler) {
+        scheduler.setOccupied(connection_.id(), outbox_.occupied(), outbox_.window(), session::nowUs());
+    });
+}
+
+void Viewer::deliver(Delivery&& delivery) {
+    const FrameJob& job = delivery.job;
+    bool stale = false;
+    if (job.requestId) {
+        --requestsPending_;
+    }
+    if (!delivery.error.empty()) {
+        refuse(problem(ErrorCode::GpuError, delivery.error, {}, job.requestId));
+    } else if (job.requestId) {
+        outbox_.requested(std::move(delivery.frame));
+    } else {
+        stale = job.still && desk_.renderer->schedule([&](Scheduler& scheduler) { return scheduler.outdated(job); });
+        if (!stale) {
+            outbox_.streamed(job.order, std::move(delivery.frame));
+        }
+    }
+    desk_.renderer->schedule([&](Scheduler& scheduler) {
+        scheduler.finished(job);
+        scheduler.setOccupied(connection_.id(), outbox_.occupied(), outbox_.window(), session::nowUs());
+    });
+    connection_.requestWrite();
+}
+
+void Viewer::tick(std::uint64_t nowUs) {
+    if (connection_.closing()) {
+        return;
+    }
+    if (!session_ && nowUs - openedUs_ > desk_.limits.helloS * kUsPerS) {
+        fail(problem(ErrorCode::Timeout, "no hello in " + std::to_string(desk_.limits.helloS) + " s"));
+        return;
+    }
+    const auto waitingSince = outbox_.waitingSinceUs();
+    if (waitingSince && nowUs - *waitingSince > desk_.limits.deadS * kUsPerS) {
+        fail(problem(ErrorCode::Timeout, "no acknowledgement in " + std::to_string(desk_.limits.deadS) + " s"));
+        return;
+    }
+    if (outbox_.textBytes() > kMaxWaitingTextBytes) {
+        fail(problem(ErrorCode::RateLimited, "replies are not read"));
+        return;
+    }
+    if (wantsStats_ && nowUs - statsSentUs_ >= kUsPerS) {
+        if (const auto stats = outbox_.takeStats()) {
+            statsSentUs_ = nowUs;
+            send(*stats);
+        }
+    }
+}
+
+void Viewer::drain() {
+    send(protocol::Goaway{protocol::Goaway::Reason::Shutdown, 500, 500});
+    connection_.close(static_cast<std::uint16_t>(CloseCode::GoingAway), "the server ends");
+}
+
+void Viewer::ok(std::uint32_t id) {
+    protocol::Ok message{.id = id};
+    message.rev = session_->rev();
+    send(message);
+}
+
+void Viewer::refuse(const DecodeError& error) {
+    ++desk_.refusedMessages;
+    send(protocol::errorMessage(error));
+}
+
+void Viewer::fail(const DecodeError& error) {
+    ++desk_.refusedMessages;
+    send(protocol::errorMessage(error, true));
+    const auto code = protocol::closeCodeOf(error.code).value_or(CloseCode::BadMessage);
+    connection_.close(static_cast<std::uint16_t>(code), error.message);
+}
+
+}  // namespace caustream

@@ -1,0 +1,124 @@
+// One connected client: what it says, and what happens then. Network thread only.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "config.h"
+#include "net/websocket_server.h"
+#include "protocol/messages.h"
+#include "render_thread.h"
+#include "scene/gltf_loader.h"
+#include "session/asset_upload.h"
+#include "session/load_thread.h"
+#include "session/outbox.h"
+#include "session/scene_store.h"
+#include "session/session.h"
+#include "session/token_bucket.h"
+
+namespace caustream {
+
+class Viewer;
+
+// What all viewers share; the service owns it and all it points to.
+struct Desk {
+    const Config& config;
+    protocol::Limits limits;
+    std::string serverId;
+    session::SceneStore scenes;
+    RenderThread* renderer = nullptr;
+    session::LoadThread* loader = nullptr;
+    std::function<void(std::function<void()>)> post;        // onto the network thread
+    std::function<Viewer*(SessionKey)> find;                // nothing once it has gone
+    std::uint32_t sessions = 0;                             // that have said hello
+    bool draining = false;
+    std::uint64_t refusedMessages = 0;
+};
+
+class Viewer {
+   public:
+    Viewer(Desk& desk, net::Connection& connection);
+    ~Viewer();
+
+    void received(std::string_view message, bool binary);
+    std::optional<session::Outgoing> next();
+    void deliver(Delivery&& delivery);
+    void tick(std::uint64_t nowUs);
+    void drain();
+
+    const session::Outbox& outbox() const { return outbox_; }
+
+   private:
+    using Loaded = tl::expected<scene::Scene, scene::LoadError>;
+    using Outcome = std::function<void(const std::optional<protocol::DecodeError>&)>;
+
+    // A change of the state document on its way, which may have to wait for its scene.
+    struct Change {
+        protocol::Json patch;
+        std::optional<protocol::Input> input;
+        Outcome done;  // called once, before the `state` message that may follow
+    };
+
+    void handle(std::string_view message, bool binary);
+    void on(const protocol::Hello& hello);
+    void on(const protocol::Update& update);
+    void on(const protocol::Input& input);
+    void on(const protocol::StreamStart& start);
+    void on(const protocol::StreamPause& pause);
+    void on(const protocol::StreamResume& resume);
+    void on(const protocol::FrameRequest& request);
+    void on(const protocol::Ack& ack);
+    void on(const protocol::AssetBegin& begin);
+    void on(const protocol::AssetEnd& end);
+    void on(const protocol::AssetAbort& abort);
+    void on(const protocol::Ping& ping);
+    void chunk(std::string_view message);
+
+    bool admit(const protocol::Hello& hello);
+    void welcome(std::uint32_t id, std::vector<std::string> missingAssets);
+    void change(Change change);
+    void load(const protocol::SceneRef& ref, protocol::Applied applied, Change change);
+    void loaded(const protocol::SceneRef& ref, Loaded result, protocol::Applied applied, Change change);
+    std::optional<protocol::DecodeError> finish(protocol::Applied applied, std::shared_ptr<const scene::Scene> base,
+                                                const Change& change);
+    void conclude(protocol::Applied applied, std::shared_ptr<const scene::Scene> base, const Change& change);
+    void assetLoaded(std::uint32_t id, const std::string& sha256, Loaded result);
+    void reportAsset(std::uint32_t id, const std::string& sha256, const scene::Scene& scene);
+
+    template <typename Message>
+    void send(const Message& message) {
+        outbox_.text(protocol::encode(message));
+        connection_.requestWrite();
+    }
+    void ok(std::uint32_t id);
+    void refuse(const protocol::DecodeError& error);
+    void fail(const protocol::DecodeError& error);  // and close
+    void sendState();
+    void setStreaming(std::uint32_t id, bool streaming);
+    void updateOccupied();
+
+    Desk& desk_;
+    net::Connection& connection_;
+    session::Outbox outbox_;
+    std::optional<session::Session> session_;
+    bool ready_ = false;    // welcomed, and known to the scheduler
+    bool loading_ = false;  // messages wait in deferred_, so that they apply in order
+    std::deque<std::pair<std::string, bool>> deferred_;
+    std::size_t deferredBytes_ = 0;
+    session::TokenBucket texts_, chunks_;
+    std::uint64_t openedUs_;
+
+    std::optional<session::AssetUpload> upload_;
+    std::optional<std::pair<std::uint32_t, std::string>> knownAsset_;  // begun, but already here: number, hash
+    std::uint32_t nextAsset_ = 1;
+
+    std::uint32_t requestsPending_ = 0;
+    bool streaming_ = false, wantsStats_ = false;
+    std::uint64_t statsSentUs_ = 0;
+};
+
+}  // namespace caustream
