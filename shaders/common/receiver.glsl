@@ -23,8 +23,38 @@ float behindAt(View view, sampler2D layer, vec3 pos, out vec2 uv) {
     return behindLayer(view, pos, textureLod(layer, uv, 0.0).x);
 }
 
+// Where the last ray was met and how fast behindLayer() grows there: where its neighbour starts to look.
+struct Meeting {
+    float t;
+    float slope;      // 1/m; 0: no neighbour yet
+};
+
+// Follows the surface that a neighbouring ray met: two or three secant steps from its meeting point. False when they do
+// not settle on it; the ray must then be searched from its beginning.
+bool followReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, inout Meeting near, out vec2 uv) {
+    uv = vec2(0.5);
+    if (near.slope <= 0.0) return false;
+    float a = near.t;
+    float fa = behindAt(view, layer, origin + a * direction, uv);
+    float b = a - fa / near.slope;
+    float fb = behindAt(view, layer, origin + b * direction, uv);
+    if (abs(fb) > 1e-4 && fa != fb) {
+        float c = b - fb * (b - a) / (fb - fa);
+        a = b;
+        b = c;
+        fa = fb;
+        fb = behindAt(view, layer, origin + b * direction, uv);
+    }
+    bool inside = all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
+    if (!inside || b <= 0.0 || !(abs(fb) <= 0.25 * kResidual)) return false;
+    near.t = b;
+    return true;
+}
+
 // `origin` and unit `direction` in the view's space, at most `reach` away; `uv` is where it is met.
-int findReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, float reach, int steps, out vec2 uv) {
+int findReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, float reach, int steps, out vec2 uv,
+                 out Meeting met) {
+    met = Meeting(0.0, 0.0);
     float from = 0.0;
     float to = reach;
     vec2 h = view.halfExtent;
@@ -59,9 +89,11 @@ int findReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, float 
 
     float f = fb;
     int side = 0;
+    met = Meeting(b, (fb - fa) / (b - a));
     for (int i = 0; i < steps && abs(f) > 1e-6; ++i) {
         float t = b - fb * (b - a) / (fb - fa);
         f = behindAt(view, layer, origin + t * direction, uv);
+        met.t = t;
         if (f > 0.0) {
             b = t;
             fb = f;

@@ -34,27 +34,70 @@ uniform int u_backSteps, u_receiverSteps;
 uniform float u_exitTolerance;                 // m
 uniform float u_reach;                         // m: farther than any receiver
 
-// 2x2 bilinear deposit; texels beyond the border take their neighbour's share.
-void deposit(vec2 uv, ivec2 size, int firstTexel, int k, float flux) {
+// Where a photon lands: the lowest of 2x2 texels and the place between them. Texels beyond the border give their share
+// to their neighbour.
+struct Place {
+    int texel;        // index of the lowest texel; -1: nowhere
+    int width;        // texels of its map in a row
+    vec2 f;
+};
+
+Place placeAt(vec2 uv, ivec2 size, int firstTexel) {
     vec2 at = clamp(uv * vec2(size) - 0.5, vec2(0.0), vec2(size) - 1.0);
-    ivec2 base = min(ivec2(at), max(size - 2, ivec2(0)));
-    vec2 f = at - vec2(base);
-    float fixedFlux = flux * u_fixedPerFlux;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 offset = ivec2(i & 1, i >> 1);
-        vec2 share = mix(1.0 - f, f, vec2(offset));
-        float part = fixedFlux * share.x * share.y;
-        ivec2 texel = base + offset;
-        int index = firstTexel + texel.x + texel.y * size.x;
+    ivec2 base = min(ivec2(at), size - 2);
+    return Place(firstTexel + base.x + base.y * size.x, size.x, at - vec2(base));
+}
+
+vec4 shares(vec2 f) {
+    return vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
+}
+
+int cornerOf(Place place, int i) { return place.texel + (i & 1) + (i >> 1) * place.width; }
+
 #if BANDS
-        atomicAdd(map[index * u_bands + int(u_glass[k].w)], uint(part + 0.5));
+void deposit(Place place, int k, float flux) {
+    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
+    for (int i = 0; i < 4; ++i) atomicAdd(map[cornerOf(place, i) * u_bands + int(u_glass[k].w)], uint(share[i] + 0.5));
+}
 #else
-        uvec3 amount = uvec3(part * u_xyz[k].xyz + 0.5);
-        atomicAdd(map[index * 3], amount.x);
-        atomicAdd(map[index * 3 + 1], amount.y);
-        atomicAdd(map[index * 3 + 2], amount.z);
+// Neighbouring wavelengths mostly land in the same texels: their XYZ is gathered here and written once.
+struct Pending {
+    Place place;
+    vec3 corner0, corner1, corner2, corner3;
+};
+
+void addTo(int texel, vec3 xyz) {
+    uvec3 amount = uvec3(xyz + 0.5);
+    atomicAdd(map[texel * 3], amount.x);
+    atomicAdd(map[texel * 3 + 1], amount.y);
+    atomicAdd(map[texel * 3 + 2], amount.z);
+}
+
+void flush(inout Pending pending) {
+    if (pending.place.texel < 0) return;
+    addTo(cornerOf(pending.place, 0), pending.corner0);
+    addTo(cornerOf(pending.place, 1), pending.corner1);
+    addTo(cornerOf(pending.place, 2), pending.corner2);
+    addTo(cornerOf(pending.place, 3), pending.corner3);
+    pending.corner0 = pending.corner1 = pending.corner2 = pending.corner3 = vec3(0.0);
+    pending.place.texel = -1;
+}
+
+void deposit(inout Pending pending, Place place, int k, float flux) {
+    if (place.texel != pending.place.texel) flush(pending);
+    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
+    vec3 xyz = u_xyz[k].xyz;
+    pending.place = place;
+    pending.corner0 += share.x * xyz;
+    pending.corner1 += share.y * xyz;
+    pending.corner2 += share.z * xyz;
+    pending.corner3 += share.w * xyz;
+}
 #endif
-    }
+
+void book(int row, float flux) {
+    uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
+    if (flux > 0.0) atomicAdd(ledger[bank + uint(row)], uint(flux * u_ledgerPerFlux + 0.5));
 }
 
 void main() {
@@ -80,61 +123,86 @@ void main() {
     float guess = 50.0 * u_exitTolerance;
     if (sampleLayer(u_back, backUv, behind)) guess = max(distance(layerToView(u_backView, backUv, behind.w), entry), u_exitTolerance);
 
-    float booked[kLedgerRows];
-    for (int i = 0; i < kLedgerRows; ++i) booked[i] = 0.0;
+    ivec2 innerSize = textureSize(u_receivers, 0);
+    ivec2 outerSize = textureSize(u_outerReceivers, 0);
+#if !BANDS
+    Pending pending = Pending(Place(-1, 0, vec2(0.0)), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+#endif
+    float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0, rejected = 0.0, left = 0.0, missed = 0.0;
+    float way = guess;
+    int backSteps = u_backSteps;
+    Meeting meeting = Meeting(0.0, 0.0);
     for (int k = 0; k < u_wavelengths; ++k) {
         float eta = u_glass[k].x;
         float weight = u_glass[k].z;      // luminance, for the ledger
         float flux = emitted;
-        booked[kLedgerOnCasters] += flux * weight;
+        onCasters += flux * weight;
 
         vec3 inside, outside, exitNormal;
         float reflectance;
         if (!refractDielectric(direction, entryNormal, eta, inside, reflectance)) {
-            booked[kLedgerTotalReflection] += flux * weight;
+            total += flux * weight;
             continue;
         }
-        booked[kLedgerReflected] += flux * reflectance * weight;
+        reflected += flux * reflectance * weight;
         flux *= 1.0 - reflectance;
 
-        float way = guess;
-        if (!findExit(u_backView, u_back, entry, inside, u_backSteps, u_exitTolerance, way, exitNormal)) {
-            booked[kLedgerRejected] += flux * weight;
+        if (!findExit(u_backView, u_back, entry, inside, backSteps, u_exitTolerance, way, exitNormal)) {
+            rejected += flux * weight;
+            way = guess;
+            backSteps = u_backSteps;
             continue;
         }
+        backSteps = (u_backSteps + 1) / 2;   // the next wavelength starts where this one left
         float kept = exp(-u_glass[k].y * way);
-        booked[kLedgerAbsorbed] += flux * (1.0 - kept) * weight;
+        absorbed += flux * (1.0 - kept) * weight;
         flux *= kept;
 
         if (!refractDielectric(inside, -exitNormal, 1.0 / eta, outside, reflectance)) {
-            booked[kLedgerTotalReflection] += flux * weight;
+            total += flux * weight;
             continue;
         }
-        booked[kLedgerReflected] += flux * reflectance * weight;
+        reflected += flux * reflectance * weight;
         flux *= 1.0 - reflectance;
 
         vec3 origin = (u_backToMap * vec4(entry + way * inside, 1.0)).xyz;
         vec3 ray = mat3(u_backToMap) * outside;
-        vec2 met;
-        int found = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, met);
-        if (found == kHit) {
-            deposit(met, textureSize(u_receivers, 0), 0, k, flux);
-            continue;
-        }
-        if (found != kRejected) {
-            found = findReceiver(u_outerView, u_outerReceivers, origin, ray, u_reach, u_receiverSteps, met);
-        }
-        if (found == kHit) {
-            ivec2 inner = textureSize(u_receivers, 0);
-            deposit(met, textureSize(u_outerReceivers, 0), inner.x * inner.y, k, flux);
+        vec2 at;
+        Place place;
+        int found = kHit;
+        if (followReceiver(u_mapView, u_receivers, origin, ray, meeting, at)) {
+            place = placeAt(at, innerSize, 0);
         } else {
-            int row = found == kRejected ? kLedgerRejected : found == kLeftView ? kLedgerLeftMap : kLedgerNoReceiver;
-            booked[row] += flux * weight;
+            found = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting);
+            place = placeAt(at, innerSize, 0);
+            if (found == kLeftView || found == kNoReceiver) {
+                found = findReceiver(u_outerView, u_outerReceivers, origin, ray, u_reach, u_receiverSteps, at, meeting);
+                place = placeAt(at, outerSize, innerSize.x * innerSize.y);
+                meeting.slope = 0.0;      // of another view
+            }
+        }
+        if (found == kHit) {
+#if BANDS
+            deposit(place, k, flux);
+#else
+            deposit(pending, place, k, flux);
+#endif
+        } else if (found == kRejected) {
+            rejected += flux * weight;
+        } else if (found == kLeftView) {
+            left += flux * weight;
+        } else {
+            missed += flux * weight;
         }
     }
-
-    uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
-    for (int i = 0; i < kLedgerDeposited; ++i) {
-        if (booked[i] > 0.0) atomicAdd(ledger[bank + uint(i)], uint(booked[i] * u_ledgerPerFlux + 0.5));
-    }
+#if !BANDS
+    flush(pending);
+#endif
+    book(kLedgerOnCasters, onCasters);
+    book(kLedgerAbsorbed, absorbed);
+    book(kLedgerReflected, reflected);
+    book(kLedgerTotalReflection, total);
+    book(kLedgerRejected, rejected);
+    book(kLedgerLeftMap, left);
+    book(kLedgerNoReceiver, missed);
 }
