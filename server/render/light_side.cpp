@@ -123,7 +123,7 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
                           .wavelengths = std::move(wavelengths), .bands = bands ? static_cast<int>(count) : 0,
                           .fixedPerFlux = fixedPerFlux, .ledgerPerFlux = kFixedRange / totalFlux_,
                           .backSteps = in.transport.backSteps, .receiverSteps = in.transport.receiverSteps,
-                          .exitToleranceM = 0.01f * radius,
+                          .exitToleranceM = 0.1f * radius,
                           .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius)},
                          {map_, ledger_});
     });

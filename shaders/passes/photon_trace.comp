@@ -120,8 +120,8 @@ void main() {
     // First guess of the way inside: along the light's own ray
     vec2 backUv = viewToUv(u_backView, entry);
     vec4 behind;
-    float guess = 50.0 * u_exitTolerance;
-    if (sampleLayer(u_back, backUv, behind)) guess = max(distance(layerToView(u_backView, backUv, behind.w), entry), u_exitTolerance);
+    float guess = 5.0 * u_exitTolerance;
+    if (sampleLayer(u_back, backUv, behind)) guess = max(distance(layerToView(u_backView, backUv, behind.w), entry), 0.01 * u_exitTolerance);
 
     ivec2 innerSize = textureSize(u_receivers, 0);
     ivec2 outerSize = textureSize(u_outerReceivers, 0);
