@@ -149,8 +149,9 @@ TEST(State, AnIndexOfRefractionStaysPhysicalOverTheBand) {
     EXPECT_TRUE(takes(R"(["cauchy",1.7280,0.01342])"));                                // SF10
     EXPECT_TRUE(takes(R"(["sellmeier",1.0396,0.2318,1.0105,0.0060,0.0200,103.56])"));  // BK7
     EXPECT_TRUE(takes(R"(["abbe",1.0,20])"));
+    EXPECT_TRUE(takes(R"(["cauchy",1.5,0.6])")) << "5.66 in the violet";
     EXPECT_FALSE(takes(R"(["cauchy",1.0,-0.2])")) << "below 1";
-    EXPECT_FALSE(takes(R"(["cauchy",1.5,1])")) << "above 5 in the violet";
+    EXPECT_FALSE(takes(R"(["cauchy",1.5,1])")) << "above 6 in the violet";
     EXPECT_FALSE(takes(R"(["sellmeier",1,0,0,0.25,0,0])")) << "resonance at 500 nm";
     EXPECT_FALSE(takes(R"(["sellmeier",1e-9,0,0,0.25050025,0,0])")) << "a resonance too thin for samples to see";
     EXPECT_FALSE(takes(R"(["sellmeier",-2,0,0,0,0,0])")) << "imaginary";
