@@ -6,6 +6,8 @@
 
 namespace caustream::connection {
 
+inline constexpr const char* kDefaultUrl = "http://127.0.0.1:9720";  // of a server that was told nothing
+
 struct Address {
     std::string host;
     int port = 0;       // 1..65535

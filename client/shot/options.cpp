@@ -8,12 +8,12 @@ namespace caustream::shot {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
-  caustream-shot --url http://127.0.0.1:8080 --scene gem --out gem.png
-  caustream-shot --url http://127.0.0.1:8080 --scene glass.glb --width 1024 --height 768 --out glass.jpg
-  caustream-shot --url http://127.0.0.1:8080 --scene prism --target spectral --set transport.wavelengths=21 --out map.npy
-  caustream-shot --url http://127.0.0.1:8080 --scene sphere --set 'lights.key.position=[1,2,0.5]' \
+  caustream-shot --url http://127.0.0.1:9720 --scene gem --out gem.png
+  caustream-shot --url http://127.0.0.1:9720 --scene glass.glb --width 1024 --height 768 --out glass.jpg
+  caustream-shot --url http://127.0.0.1:9720 --scene prism --target spectral --set transport.wavelengths=21 --out map.npy
+  caustream-shot --url http://127.0.0.1:9720 --scene sphere --set 'lights.key.position=[1,2,0.5]' \
                  --set 'camera.exposure=["ev",9]' --out moved.png
-  caustream-shot --url http://127.0.0.1:8080 --scene gem --moving --frames 60 --out last.jpg
+  caustream-shot --url http://127.0.0.1:9720 --scene gem --moving --frames 60 --out last.jpg
 
 The ending of FILE chooses the format: .png (8 bits, fetched lossless), .npy (float32, linear: the spectral map or the
 picture before exposure's curve), .jpg. A # in FILE becomes the frame's number; without it the last frame is kept.
@@ -57,7 +57,7 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
         return tl::make_unexpected(ParseEnd{1, "caustream-shot: " + why + "; caustream-shot --help shows how\n"});
     };
     Options options;
-    std::string url = "http://127.0.0.1:8080";
+    std::string url = connection::kDefaultUrl;
     std::vector<std::string> settings;
     CLI::App app("Fetches frames from a caustream server and writes them to a file.", "caustream-shot");
     app.footer(kExamples);

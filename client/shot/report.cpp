@@ -80,12 +80,14 @@ void Report::add(const Frame& frame, std::uint64_t tookUs) {
 }
 
 Json Report::json(const std::string& file, const Frame& last, const Session& session) const {
+    Json state = session.state();
+    state.merge_patch(session.connection().document());
     Json json = {{"file", file},
                  {"server", server_},
                  {"stream_info", Json::parse(protocol::encode(*last.info), nullptr, false)},
                  {"header", headerJson(last.header)},
                  {"map_hash", last.mapHash},
-                 {"state", session.state()},
+                 {"state", state},
                  {"values", valuesJson(last.image)}};
     json["statistics"] = {{"frames", tookMs_.size()},
                           {"took_ms", spread(tookMs_)},

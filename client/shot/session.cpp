@@ -21,7 +21,6 @@ void Session::take(const connection::Event& event) {
                            std::string(protocol::errorName(value.code)) + ")";
             } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
                 state_ = value.state;
-                haveState_ = true;
                 warnings_ = value.scene.warnings;
             } else if constexpr (std::is_same_v<T, protocol::Stats>) {
                 stats_ = value;
@@ -58,21 +57,22 @@ Session::Done Session::connect() {
 }
 
 Session::Done Session::update(const Json& patch) {
-    if (patch.contains("scene")) haveState_ = false;
     const auto id = connection_.update(patch);
     if (!id) return tl::make_unexpected(id.error().field + ": " + id.error().message);
     return waitUntil("the answer to a change", [&] { return newestOk_ >= *id; });
 }
 
 Session::Done Session::showFile(std::vector<std::uint8_t> glb) {
-    haveState_ = false;
+    const Json reference = {"asset", connection::sha256Hex(glb)};
     connection_.showFile(std::move(glb));
     if (auto uploaded = waitUntil("the file's scene", [this] { return report_.has_value(); }); !uploaded) return uploaded;
-    return waitForState();
+    return waitForScene(reference);
 }
 
-Session::Done Session::waitForState() {
-    return waitUntil("the scene", [this] { return haveState_; });
+Session::Done Session::waitForScene(const Json& reference) {
+    return waitUntil("the scene", [&] {
+        return state_.is_object() && (reference.is_null() || state_.value("scene", Json{}) == reference);
+    });
 }
 
 tl::expected<connection::Frame, Failure> Session::requestStill() {

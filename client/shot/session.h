@@ -22,14 +22,16 @@ class Session {
     // Sends a patch, waits until the server took it.
     Done update(const protocol::Json& patch);
     Done showFile(std::vector<std::uint8_t> glb);
-    // The resolved document of the newest state message.
-    Done waitForState();
+    // Until the server's resolved document is of this scene, ["builtin", name] or ["asset", sha256]; null: of any.
+    Done waitForScene(const protocol::Json& reference);
 
     tl::expected<connection::Frame, Failure> requestStill();
     tl::expected<connection::Frame, Failure> nextStreamed();
 
     connection::Connection& connection() { return connection_; }
+    const connection::Connection& connection() const { return connection_; }
     const protocol::Welcome& welcome() const { return *welcome_; }
+    // What the server said when the scene was there: the file's values and what was asked for until then.
     const protocol::Json& state() const { return state_; }
     const std::optional<protocol::Stats>& stats() const { return stats_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
@@ -46,7 +48,6 @@ class Session {
     std::optional<protocol::Welcome> welcome_;
     std::optional<protocol::Stats> stats_;
     protocol::Json state_;
-    bool haveState_ = false;
     std::uint32_t newestOk_ = 0;
     std::optional<protocol::AssetReport> report_;
     std::vector<std::string> warnings_;

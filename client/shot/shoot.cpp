@@ -44,17 +44,23 @@ Json streamPatch(const Options& options) {
     return {{"stream", stream}};
 }
 
+std::string namesOf(const Json& object) {
+    std::string names;
+    for (const auto& [name, value] : object.items()) names += (names.empty() ? "" : ", ") + name;
+    return names.empty() ? "none" : names;
+}
+
 Session::Done configure(Session& session, const Options& options) {
     if (isFile(options.scene)) {
         auto bytes = readFile(options.scene);
         if (!bytes) return tl::make_unexpected(bytes.error());
         if (auto shown = session.showFile(std::move(*bytes)); !shown) return shown;
-    } else {
-        Json patch = Json::object();
-        if (!options.scene.empty()) patch = protocol::sceneChange({protocol::SceneRef::Kind::Builtin, options.scene});
-        else patch["scene"] = session.welcome().state.value("scene", Json{"builtin", "gem"});
+    } else if (!options.scene.empty()) {
+        const Json patch = protocol::sceneChange({protocol::SceneRef::Kind::Builtin, options.scene});
         if (auto updated = session.update(patch); !updated) return updated;
-        if (auto resolved = session.waitForState(); !resolved) return resolved;
+        if (auto resolved = session.waitForScene(patch["scene"]); !resolved) return resolved;
+    } else if (auto resolved = session.waitForScene(nullptr); !resolved) {
+        return resolved;
     }
 
     // One patch for all settings, as some hold only together; the resolved state gives arrays their elements.
@@ -64,6 +70,15 @@ Session::Done configure(Session& session, const Options& options) {
         if (!part) return tl::make_unexpected("--set " + setting.path + ": " + part.error().message);
         document.merge_patch(*part);
         patch.merge_patch(*part);
+        // The protocol lets a name pass that the scene does not have; here it can only be a slip.
+        for (const char* kind : {"lights", "materials"}) {
+            if (!part->contains(kind) || !(*part)[kind].is_object()) continue;
+            const Json known = session.state().value(kind, Json::object());
+            for (const auto& [name, value] : (*part)[kind].items())
+                if (!known.contains(name))
+                    return tl::make_unexpected("--set " + setting.path + ": the scene has no such name; its " + kind +
+                                               " are " + namesOf(known));
+        }
     }
     return session.update(patch);
 }

@@ -1,0 +1,25 @@
+// What caustream-view was asked for on its command line.
+#pragma once
+#include <string>
+#include <tl/expected.hpp>
+
+#include "client/connection/address.h"
+
+namespace caustream::view {
+
+struct Options {
+    connection::Address address;
+    std::string file;       // a GLB to show; empty: a scene of the server
+    std::string scene;      // empty: the server's own choice
+    std::string token;
+    std::string saveFolder = ".";
+    int width = 1280, height = 800;  // of the window
+};
+
+struct ParseEnd {           // nothing to run: help was asked for, or the arguments are wrong
+    int exitCode = 0;
+    std::string text;
+};
+tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv);
+
+}  // namespace caustream::view

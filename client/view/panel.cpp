@@ -1,0 +1,221 @@
+#include "client/view/panel.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <glm/geometric.hpp>
+#include <string>
+
+namespace caustream::view {
+namespace {
+
+using protocol::Json;
+using protocol::LightType;
+
+// A label above its control, which then has the panel's whole width.
+void label(const char* text) {
+    ImGui::TextDisabled("%s", text);
+    ImGui::SetNextItemWidth(-FLT_MIN);
+}
+
+bool slider(const char* text, const char* id, double& value, double low, double high, const char* format, bool logarithmic = false) {
+    label(text);
+    return ImGui::SliderScalar(id, ImGuiDataType_Double, &value, &low, &high, format,
+                               ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+}
+
+// The chosen name, when another one was chosen.
+template <class Names>
+const std::string* choice(const char* id, const std::string& current, const Names& names) {
+    const std::string* chosen = nullptr;
+    if (!ImGui::BeginCombo(id, current.c_str())) return nullptr;
+    for (const std::string& name : names)
+        if (ImGui::Selectable(name.c_str(), name == current) && name != current) chosen = &name;
+    ImGui::EndCombo();
+    return chosen;
+}
+
+template <class T>
+std::vector<std::string> keysOf(const std::map<std::string, T>& map) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : map) keys.push_back(key);
+    return keys;
+}
+
+std::string targetOf(const protocol::StreamState& stream) {
+    return stream.target == protocol::Target::Composite  ? "composite"
+           : stream.target == protocol::Target::Spectral ? "spectral"
+                                                         : stream.pass;
+}
+
+void drawScene(Model& model, Editor& editor) {
+    if (!model.welcome) return;
+    const bool builtin = model.sceneRef.kind == protocol::SceneRef::Kind::Builtin;
+    label("Scene");
+    if (const auto* name = choice("##scene", builtin ? model.sceneRef.name : model.scene.name.substr(0, 12) + " (file)", model.welcome->scenes))
+        editor.showScene({protocol::SceneRef::Kind::Builtin, *name});
+    if (model.upload) {
+        const double part = model.upload->size > 0 ? static_cast<double>(model.upload->sent) / static_cast<double>(model.upload->size) : 0.0;
+        ImGui::ProgressBar(static_cast<float>(part), {-FLT_MIN, 0}, part < 1.0 ? "sending the file" : "loading");
+    } else {
+        ImGui::TextDisabled("or drop a GLB file on the window");
+    }
+}
+
+void drawPicture(Model& model, Controls& controls, Editor& editor) {
+    std::vector<std::string> targets = {"composite", "spectral"};
+    if (model.welcome) targets.insert(targets.end(), model.welcome->passes.begin(), model.welcome->passes.end());
+    label("Show");
+    if (const auto* name = choice("##target", targetOf(model.stream), targets)) {
+        model.stream.target = *name == "composite"  ? protocol::Target::Composite
+                              : *name == "spectral" ? protocol::Target::Spectral
+                                                    : protocol::Target::Pass;
+        model.stream.pass = *name;
+        editor.showTarget(*name);
+    }
+
+    bool automatic = !model.exposureEv;
+    const auto exposureChanged = [&] {
+        editor.change({{"camera", {{"exposure", model.exposureEv ? Json::array({"ev", *model.exposureEv}) : Json::array({"auto"})}}}});
+    };
+    if (ImGui::Checkbox("Automatic exposure", &automatic)) {
+        if (automatic) model.exposureEv.reset();
+        else model.exposureEv = model.stats ? model.stats->exposureEv : 0.0;
+        exposureChanged();
+    }
+    if (model.exposureEv && slider("Exposure", "##ev", *model.exposureEv, -16, 16, "%+.1f EV")) exposureChanged();
+
+    constexpr std::pair<const char*, double> kResolutions[] = {{"automatic", 0.0}, {"100 %", 1.0}, {"75 %", 0.75}, {"50 %", 0.5}};
+    const char* shown = kResolutions[0].first;
+    for (const auto& [name, value] : kResolutions)
+        if (value == controls.resolution) shown = name;
+    label("Resolution");
+    if (ImGui::BeginCombo("##resolution", shown)) {
+        for (const auto& [name, value] : kResolutions)
+            if (ImGui::Selectable(name, value == controls.resolution)) controls.resolution = value;
+        ImGui::EndCombo();
+    }
+    if (ImGui::Button("Save picture (S)", {-FLT_MIN, 0})) controls.save = true;
+}
+
+void drawLight(Model& model, Controls& controls, Editor& editor) {
+    if (model.lights.size() > 1) {
+        label("Light");
+        if (const auto* name = choice("##light", model.light, keysOf(model.lights))) model.light = *name;
+    }
+    LightModel* light = model.editedLight();
+    if (!light) return;
+    ImGui::Checkbox("Left button drags the light (L)", &controls.leftDragsLight);
+    if (light->type != LightType::Directional) {
+        label("Position, m");
+        const glm::dvec3 target = lightTarget(light->pose, model.centre());
+        if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &light->pose.position.x, 3, 0.01f, nullptr, nullptr, "%.2f")) {
+            // It keeps shining where it shone.
+            if (glm::distance(target, light->pose.position) > 1e-6)
+                light->pose.direction = glm::normalize(target - light->pose.position);
+            editor.lightMoved(model.light);
+        }
+    }
+    if (light->type == LightType::Spot && slider("Cone, half angle", "##cone", light->halfAngleDeg, 0.5, 80, "%.1f deg"))
+        editor.lightChanged(model.light);
+    const char* unit = light->intensity.unit == protocol::Intensity::Unit::Candela ? "%.4g cd"
+                       : light->intensity.unit == protocol::Intensity::Unit::Watt  ? "%.4g W"
+                                                                                   : "%.4g lx";
+    if (slider("Intensity", "##intensity", light->intensity.value, 0.01, 1e6, unit, true)) editor.lightChanged(model.light);
+}
+
+void drawGlass(Model& model, Editor& editor) {
+    if (model.glasses.size() > 1) {
+        label("Material");
+        if (const auto* name = choice("##material", model.material, keysOf(model.glasses))) model.material = *name;
+    }
+    const auto found = model.glasses.find(model.material);
+    if (found == model.glasses.end()) return ImGui::TextDisabled("no glass in this scene");
+    Glass& glass = found->second;
+    bool changed = false;
+    label("Preset");
+    if (ImGui::BeginCombo("##preset", "choose a glass")) {
+        for (const auto& preset : model.welcome ? model.welcome->glasses : std::vector<protocol::GlassPreset>{}) {
+            if (!ImGui::Selectable(preset.name.c_str())) continue;
+            glass = glassOf(preset.dispersion);
+            editor.change({{"materials", {{model.material, {{"dispersion", protocol::toJson(preset.dispersion)}}}}}});
+        }
+        ImGui::EndCombo();
+    }
+    changed |= slider("Cauchy A", "##A", glass.A, 1.0, 2.5, "%.4f");
+    changed |= slider("Cauchy B, um^2 (0: no colours)", "##B", glass.B_um2, 0.0, 0.08, "%.5f");
+    if (changed) editor.glassChanged(model.material);
+}
+
+void drawTransport(Model& model, Editor& editor) {
+    protocol::TransportState& transport = model.transport;
+    label("Wavelengths");
+    if (ImGui::SliderInt("##wavelengths", &transport.wavelengths, 1, 64, "%d", ImGuiSliderFlags_AlwaysClamp))
+        editor.change({{"transport", {{"wavelengths", transport.wavelengths}}}});
+
+    constexpr int kGrids[] = {0, 128, 256, 512, 1024, 2048}, kMaps[] = {256, 512, 1024, 2048};
+    const auto sizes = [&](const char* title, const char* id, const char* field, int& value, auto& list) {
+        label(title);
+        if (!ImGui::BeginCombo(id, value == 0 ? "automatic" : std::to_string(value).c_str())) return;
+        for (const int size : list) {
+            if (!ImGui::Selectable(size == 0 ? "automatic" : std::to_string(size).c_str(), size == value)) continue;
+            value = size;
+            editor.change({{"transport", {{field, size}}}});
+        }
+        ImGui::EndCombo();
+    };
+    sizes("Photons a side", "##grid", "photon_grid", transport.photonGrid, kGrids);
+    sizes("Map texels a side", "##map", "map_size", transport.mapSize, kMaps);
+    if (ImGui::Checkbox("Fill gaps", &transport.gapFill)) editor.change({{"transport", {{"gap_fill", transport.gapFill}}}});
+    ImGui::SameLine();
+    if (ImGui::Checkbox("Smooth", &transport.filter)) editor.change({{"transport", {{"filter", transport.filter}}}});
+}
+
+bool section(const char* name, bool open = true) {
+    ImGui::Spacing();
+    return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+}  // namespace
+
+void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
+    const ImGuiIO& io = ImGui::GetIO();
+    ImGui::SetNextWindowPos({io.DisplaySize.x - width, 0});
+    ImGui::SetNextWindowSize({width, io.DisplaySize.y});
+    ImGui::Begin("caustream", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings);
+    const ImVec4 good{0.36f, 0.80f, 0.47f, 1}, bad{0.95f, 0.55f, 0.25f, 1};
+    ImGui::TextColored(model.connected ? good : bad, model.connected ? "connected" : "offline");
+    ImGui::SameLine();
+    ImGui::TextWrapped("%s", model.connection.c_str());
+
+    drawScene(model, editor);
+    if (section("Picture")) drawPicture(model, controls, editor);
+    if (section("Light")) drawLight(model, controls, editor);
+    if (section("Glass")) drawGlass(model, editor);
+    if (section("Spectral map")) drawTransport(model, editor);
+    drawReadout(model);
+    ImGui::End();
+}
+
+void drawMessages(const Model& model, float pictureWidth) {
+    std::vector<Message> lines;
+    for (const auto& [key, status] : model.statuses) lines.push_back({status.level == protocol::Status::Level::Error, status.message});
+    lines.insert(lines.end(), model.messages.begin(), model.messages.end());
+    if (!model.connected) lines.push_back({true, model.connection});
+    if (lines.empty()) return;
+    ImGui::SetNextWindowPos({12, ImGui::GetIO().DisplaySize.y - 12}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(pictureWidth - 24, 100.0f), FLT_MAX});
+    ImGui::SetNextWindowBgAlpha(0.8f);
+    ImGui::Begin("##messages", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushTextWrapPos(std::max(pictureWidth - 50, 80.0f));
+    for (const auto& line : lines)
+        ImGui::TextColored(line.error ? ImVec4{1, 0.6f, 0.4f, 1} : ImVec4{0.9f, 0.9f, 0.92f, 1}, "%s", line.text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
+}  // namespace caustream::view

@@ -1,0 +1,26 @@
+// The panel at the window's right: everything that can be set, and what the server says of itself.
+#pragma once
+#include "client/view/editor.h"
+#include "client/view/model.h"
+
+namespace caustream::view {
+
+// What only this window knows.
+struct Controls {
+    bool panel = true;
+    bool leftDragsLight = false;
+    double resolution = 0.0;   // pictures' pixels per window pixel; 0: as the server's GPU suggests
+    bool save = false;         // asked for; the window takes it back
+};
+
+constexpr float kPanelWidth = 350.0f;  // at scale 1
+
+// Draws it at the right edge of the display, `width` pixels wide.
+void drawPanel(Model& model, Controls& controls, Editor& editor, float width);
+// Over the picture: messages, statuses, what is wrong.
+void drawMessages(const Model& model, float pictureWidth);
+
+// The panel's last part: rates, stage times, plan, ledger.
+void drawReadout(const Model& model);
+
+}  // namespace caustream::view

@@ -1,0 +1,98 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cstdio>
+
+#include "client/view/panel.h"
+
+namespace caustream::view {
+namespace {
+
+void row(const char* name, const char* format, double value) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", name);
+    ImGui::TableNextColumn();
+    char text[32];
+    std::snprintf(text, sizeof text, format, value);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text).x);
+    ImGui::TextUnformatted(text);
+}
+
+bool beginTable(const char* id) {
+    return ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp);
+}
+
+void drawRates(const Model& model) {
+    if (!beginTable("##rates")) return;
+    row("frames per second", "%.1f", model.frameRate);
+    row("input to display", "%.1f ms", model.latencyMs);
+    row("round trip", "%.2f ms", model.roundTripMs);
+    row("server: render", "%.1f ms", model.renderMs);
+    row("server: encode", "%.1f ms", model.encodeMs);
+    row("decode", "%.1f ms", model.decodeMs);
+    row("frame size", "%.0f kB", model.payloadKb);
+    if (model.stats) {
+        row("photons", "%.0f", model.stats->photons);
+        row("dropped", "%.0f", model.stats->dropped);
+        row("acknowledgement window", "%.0f", model.stats->window);
+    }
+    ImGui::EndTable();
+    ImGui::TextDisabled("picture %d x %d", model.frameWidth, model.frameHeight);
+}
+
+void drawStages(const protocol::Stats& stats) {
+    double longest = 1e-3;
+    for (const auto& stage : stats.stages) longest = std::max(longest, stage.ms);
+    for (const auto& stage : stats.stages) {
+        char text[96];
+        std::snprintf(text, sizeof text, "%s  %.2f ms", stage.pass.c_str(), stage.ms);
+        ImGui::ProgressBar(static_cast<float>(stage.ms / longest), {-FLT_MIN, 0}, text);
+    }
+}
+
+void drawPlan(const protocol::Stats& stats) {
+    for (const auto& entry : stats.plan) {
+        ImGui::TextColored(entry.run ? ImVec4{0.55f, 0.85f, 0.6f, 1} : ImVec4{0.56f, 0.56f, 0.58f, 1}, "%s %s", entry.run ? "run " : "skip",
+                           entry.pass.c_str());
+        if (entry.reason.empty()) continue;
+        ImGui::Indent();
+        ImGui::PushTextWrapPos(0.0f);
+        ImGui::TextDisabled("%s", entry.reason.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::Unindent();
+    }
+}
+
+void drawLedger(const protocol::Ledger& ledger) {
+    const double whole = ledger.onCasters;
+    if (!(whole > 0.0) || !beginTable("##ledger")) return;
+    row("light on the glass", "%.4g sr", whole);
+    const auto part = [&](const char* name, double value) { row(name, "%.1f %%", 100.0 * value / whole); };
+    part("into the map", ledger.deposited);
+    part("absorbed", ledger.absorbed);
+    part("reflected", ledger.reflected);
+    part("total reflection", ledger.totalReflection);
+    part("rejected", ledger.rejected);
+    part("outside the map", ledger.leftMap);
+    part("no receiver", ledger.noReceiver);
+    ImGui::EndTable();
+}
+
+}  // namespace
+
+void drawReadout(const Model& model) {
+    ImGui::Spacing();
+    if (ImGui::CollapsingHeader("Speed", ImGuiTreeNodeFlags_DefaultOpen)) drawRates(model);
+    if (!model.stats) return;
+    ImGui::Spacing();
+    if (ImGui::CollapsingHeader("Server's stages")) drawStages(*model.stats);
+    ImGui::Spacing();
+    if (ImGui::CollapsingHeader("Plan")) drawPlan(*model.stats);
+    if (!model.stats->ledger) return;
+    ImGui::Spacing();
+    if (ImGui::CollapsingHeader("Where the light goes")) drawLedger(*model.stats->ledger);
+}
+
+}  // namespace caustream::view
