@@ -57,8 +57,12 @@ ClientMessage decodeStreamStart(Fields& in) {
     return start;
 }
 
-ClientMessage decodeStreamPause(Fields& in) { return StreamPause{requestId(in)}; }
-ClientMessage decodeStreamResume(Fields& in) { return StreamResume{requestId(in)}; }
+ClientMessage decodeStreamPause(Fields& in) {
+    return StreamPause{requestId(in)};
+}
+ClientMessage decodeStreamResume(Fields& in) {
+    return StreamResume{requestId(in)};
+}
 
 ClientMessage decodeFrameRequest(Fields& in) {
     FrameRequest request{requestId(in)};
@@ -77,9 +81,15 @@ ClientMessage decodeAssetBegin(Fields& in) {
     return begin;
 }
 
-ClientMessage decodeAssetEnd(Fields& in) { return AssetEnd{requestId(in), in.at("asset").u32()}; }
-ClientMessage decodeAssetAbort(Fields& in) { return AssetAbort{in.at("asset").u32()}; }
-ClientMessage decodePing(Fields& in) { return Ping{in.at("t_us").integer(0, kMaxSafeInteger)}; }
+ClientMessage decodeAssetEnd(Fields& in) {
+    return AssetEnd{requestId(in), in.at("asset").u32()};
+}
+ClientMessage decodeAssetAbort(Fields& in) {
+    return AssetAbort{in.at("asset").u32()};
+}
+ClientMessage decodePing(Fields& in) {
+    return Ping{in.at("t_us").integer(0, kMaxSafeInteger)};
+}
 
 constexpr Op<ClientMessage> kOps[] = {
     {"hello", decodeHello},
@@ -103,8 +113,8 @@ tl::expected<ClientMessage, DecodeError> decodeClientMessage(std::string_view te
     if (!message) return message;
     if (const auto* begin = std::get_if<AssetBegin>(&*message); begin && begin->size > limits.assetBytes)
         return tl::unexpected(DecodeError{ErrorCode::TooLarge,
-                                          "an asset may have " + std::to_string(limits.assetBytes) + " bytes",
-                                          "size", begin->id});
+                                          "an asset may have " + std::to_string(limits.assetBytes) + " bytes", "size",
+                                          begin->id});
     return message;
 }
 
@@ -143,8 +153,12 @@ std::string encode(const Input& input) {
 std::string encode(const StreamStart& start) {
     return text({{"op", "stream.start"}, {"id", start.id}, {"stats", start.stats}});
 }
-std::string encode(const StreamPause& pause) { return text({{"op", "stream.pause"}, {"id", pause.id}}); }
-std::string encode(const StreamResume& resume) { return text({{"op", "stream.resume"}, {"id", resume.id}}); }
+std::string encode(const StreamPause& pause) {
+    return text({{"op", "stream.pause"}, {"id", pause.id}});
+}
+std::string encode(const StreamResume& resume) {
+    return text({{"op", "stream.resume"}, {"id", resume.id}});
+}
 std::string encode(const FrameRequest& request) {
     return text({{"op", "frame.request"}, {"id", request.id}, {"still", request.still}});
 }
@@ -162,9 +176,15 @@ std::string encode(const AssetBegin& begin) {
                  {"size", begin.size},
                  {"mime", begin.mime}});
 }
-std::string encode(const AssetEnd& end) { return text({{"op", "asset.end"}, {"id", end.id}, {"asset", end.asset}}); }
-std::string encode(const AssetAbort& abort) { return text({{"op", "asset.abort"}, {"asset", abort.asset}}); }
-std::string encode(const Ping& ping) { return text({{"op", "ping"}, {"t_us", ping.tUs}}); }
+std::string encode(const AssetEnd& end) {
+    return text({{"op", "asset.end"}, {"id", end.id}, {"asset", end.asset}});
+}
+std::string encode(const AssetAbort& abort) {
+    return text({{"op", "asset.abort"}, {"asset", abort.asset}});
+}
+std::string encode(const Ping& ping) {
+    return text({{"op", "ping"}, {"t_us", ping.tUs}});
+}
 
 std::string encode(const ClientMessage& message) {
     return std::visit([](const auto& one) { return encode(one); }, message);

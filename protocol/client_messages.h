@@ -18,7 +18,7 @@ enum class Role { Control, View };
 
 struct Resume {
     std::string session;
-    std::optional<Json> state;               // the client's copy of the document, for a server that has lost it
+    std::optional<Json> state;  // the client's copy of the document, for a server that has lost it
     std::optional<std::uint32_t> rev, inputSeq;
     bool operator==(const Resume&) const = default;
 };
@@ -27,11 +27,11 @@ struct Hello {
     std::uint32_t id = 0;
     std::optional<std::string> token;
     std::string clientName, clientVersion;
-    std::vector<std::string> caps;           // "jpeg" "png" "raw" "f16" "f32"; unknown ones are ignored
-    std::uint32_t maxInflight = 2;           // 1..8 frames sent and not acknowledged
-    bool strict = false;                     // unknown fields are errors
+    std::vector<std::string> caps;  // "jpeg" "png" "raw" "f16" "f32"; unknown ones are ignored
+    std::uint32_t maxInflight = 2;  // 1..8 frames sent and not acknowledged
+    bool strict = false;            // unknown fields are errors
     Role role = Role::Control;
-    std::optional<std::string> follow;       // another session's id
+    std::optional<std::string> follow;  // another session's id
     std::optional<Resume> resume;
     bool operator==(const Hello&) const = default;
 };
@@ -42,16 +42,16 @@ struct Update {
     bool operator==(const Update&) const = default;
 };
 
-struct Input {                               // no reply; newest pose wins
+struct Input {  // no reply; newest pose wins
     std::uint32_t seq = 0;
-    std::uint64_t tUs = 0;                   // client's clock
-    Json patch = Json::object();             // holds `camera`, `lights`, both or neither
+    std::uint64_t tUs = 0;        // client's clock
+    Json patch = Json::object();  // holds `camera`, `lights`, both or neither
     bool operator==(const Input&) const = default;
 };
 
 struct StreamStart {
     std::uint32_t id = 0;
-    bool stats = false;                      // send `stats` once a second
+    bool stats = false;  // send `stats` once a second
     bool operator==(const StreamStart&) const = default;
 };
 struct StreamPause {
@@ -63,23 +63,23 @@ struct StreamResume {
     bool operator==(const StreamResume&) const = default;
 };
 
-struct FrameRequest {                        // one frame of the present state, drawn whatever the stream does
+struct FrameRequest {  // one frame of the present state, drawn whatever the stream does
     std::uint32_t id = 0;
-    bool still = false;                      // anti-aliased
+    bool still = false;  // anti-aliased
     bool operator==(const FrameRequest&) const = default;
 };
 
-struct Ack {                                 // cumulative, sent once the frame is on the screen
+struct Ack {  // cumulative, sent once the frame is on the screen
     std::uint32_t seq = 0;
-    std::uint64_t recvUs = 0;                // client's clock
+    std::uint64_t recvUs = 0;  // client's clock
     std::uint32_t decodeUs = 0, paintUs = 0;
     bool operator==(const Ack&) const = default;
 };
 
 struct AssetBegin {
     std::uint32_t id = 0;
-    std::string sha256;                      // 64 lower-case hex digits
-    std::uint64_t size = 0;                  // bytes, > 0
+    std::string sha256;      // 64 lower-case hex digits
+    std::uint64_t size = 0;  // bytes, > 0
     std::string mime = "model/gltf-binary";
     bool operator==(const AssetBegin&) const = default;
 };

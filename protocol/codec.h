@@ -10,9 +10,9 @@
 
 namespace caustream::protocol {
 
-inline constexpr std::size_t kTextBytes = 512;      // identities, hints: short texts that people write
+inline constexpr std::size_t kTextBytes = 512;  // identities, hints: short texts that people write
 inline constexpr std::size_t kSentenceBytes = 4096;
-inline constexpr std::size_t kListCount = 1024;     // names in one list of a server's message
+inline constexpr std::size_t kListCount = 1024;  // names in one list of a server's message
 
 template <class Message>
 struct Op {
@@ -52,7 +52,9 @@ tl::expected<Message, DecodeError> decodeByOp(std::string_view text, std::size_t
     return bad(ErrorCode::UnknownOp, "op", "is not known", id);
 }
 
-inline std::uint32_t requestId(Fields& in) { return in.at("id").u32(1); }
+inline std::uint32_t requestId(Fields& in) {
+    return in.at("id").u32(1);
+}
 
 template <class T>
 void putOptional(Json& object, const char* key, const std::optional<T>& value) {
@@ -60,6 +62,8 @@ void putOptional(Json& object, const char* key, const std::optional<T>& value) {
 }
 
 // Names that came from files may not be UTF-8: replaced, as a message must be.
-inline std::string text(const Json& message) { return message.dump(-1, ' ', false, Json::error_handler_t::replace); }
+inline std::string text(const Json& message) {
+    return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 }  // namespace caustream::protocol

@@ -9,7 +9,7 @@ namespace caustream::protocol {
 
 enum class ErrorCode {
     // The connection may end with a close code of its own.
-    BadMessage,    // not JSON, not an object, no op; a binary message whose header lies
+    BadMessage,  // not JSON, not an object, no op; a binary message whose header lies
     AuthRequired,
     Forbidden,
     Timeout,
@@ -21,7 +21,7 @@ enum class ErrorCode {
     TooLarge,
     Draining,
     // The connection always goes on.
-    BadRequest,    // a field is missing or has the wrong type, or fields contradict each other
+    BadRequest,  // a field is missing or has the wrong type, or fields contradict each other
     OutOfRange,
     UnknownOp,
     UnknownField,  // only after hello.strict
@@ -53,9 +53,9 @@ std::optional<CloseCode> closeCodeOf(ErrorCode code);
 
 struct DecodeError {
     ErrorCode code = ErrorCode::BadMessage;
-    std::string message;                  // one sentence
-    std::string field;                    // "camera.fov_y_deg", "camera.eye[1]"; empty: the whole message
-    std::optional<std::uint32_t> id;      // of the request, where it could be read: the reply carries it
+    std::string message;              // one sentence
+    std::string field;                // "camera.fov_y_deg", "camera.eye[1]"; empty: the whole message
+    std::optional<std::uint32_t> id;  // of the request, where it could be read: the reply carries it
     bool operator==(const DecodeError&) const = default;
 };
 

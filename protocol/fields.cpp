@@ -15,7 +15,9 @@ std::string shown(double value) {
     return {digits.data(), end.ptr};
 }
 
-std::string range(double min, double max) { return shown(min) + " to " + shown(max); }
+std::string range(double min, double max) {
+    return shown(min) + " to " + shown(max);
+}
 
 }  // namespace
 
@@ -106,8 +108,8 @@ std::size_t Item::size(std::size_t min, std::size_t max) const {
         return 0;
     }
     if (value_->size() >= min && value_->size() <= max) return value_->size();
-    fail(ErrorCode::BadRequest, "must have " + std::to_string(min) +
-                                    (min == max ? "" : " to " + std::to_string(max)) + " elements");
+    fail(ErrorCode::BadRequest,
+         "must have " + std::to_string(min) + (min == max ? "" : " to " + std::to_string(max)) + " elements");
     return 0;
 }
 
@@ -166,7 +168,9 @@ Item Fields::at(std::string_view key) {
     return absent;
 }
 
-void Fields::beStrict(bool strict) { item_.decoding().strict = strict; }
+void Fields::beStrict(bool strict) {
+    item_.decoding().strict = strict;
+}
 
 void Fields::finish() const {
     if (!item_.decoding().strict || !item_.json().is_object()) return;

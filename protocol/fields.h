@@ -1,5 +1,5 @@
-// Reading JSON that cannot be trusted: every getter checks type and range, the first failure is kept, and what follows a
-// failure reads as zero. Nothing wraps, truncates or clamps.
+// Reading JSON that cannot be trusted: every getter checks type and range, the first failure is kept, and what follows
+// a failure reads as zero. Nothing wraps, truncates or clamps.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -31,7 +31,7 @@ struct Choice {
 
 // One value and where it stands. Holds pointers only: the document, the parent item and the Decoding outlive it.
 class Item {
-   public:
+ public:
     Item(const Json* value, const Item* parent, std::string_view key, std::size_t index, Decoding& decoding)
         : value_(value), parent_(parent), key_(key), index_(index), decoding_(&decoding) {}
     Item(const Json& root, Decoding& decoding) : Item(&root, nullptr, {}, 0, decoding) {}
@@ -56,7 +56,7 @@ class Item {
     std::size_t size(std::size_t min, std::size_t max) const;
     Item operator[](std::size_t index) const { return {&(*value_)[index], this, {}, index, *decoding_}; }
     Vec3 vec3(double min, double max) const;
-    Vec3 direction() const;      // a vec3 that is not (0, 0, 0)
+    Vec3 direction() const;  // a vec3 that is not (0, 0, 0)
     std::vector<double> ascending(std::size_t minCount, std::size_t maxCount, double min, double max,
                                   std::size_t first = 0) const;
     std::vector<std::string> texts(std::size_t maxCount, std::size_t maxBytes) const;
@@ -72,7 +72,7 @@ class Item {
         return choices[0].value;
     }
 
-   private:
+ private:
     const Json* value_;
     const Item* parent_;
     std::string_view key_;
@@ -82,7 +82,7 @@ class Item {
 
 // The members of an object. Remembers which were asked for, so that strict decoding can name the others.
 class Fields {
-   public:
+ public:
     explicit Fields(const Item& item);
     Fields(const Fields&) = delete;
     Fields& operator=(const Fields&) = delete;
@@ -93,7 +93,7 @@ class Fields {
     void finish() const;                             // strict: fails on members nobody asked for
     const Item& item() const { return item_; }
 
-   private:
+ private:
     Item item_;
     std::vector<std::string_view> asked_;
 };

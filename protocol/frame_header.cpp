@@ -9,7 +9,7 @@ namespace {
 
 // Fields are written and read in the order of the table in README.md, each at the place the one before ended.
 class Writer {
-   public:
+ public:
     explicit Writer(std::uint8_t* to) : to_(to) {}
     template <class T>
     Writer& put(T value) {
@@ -17,12 +17,12 @@ class Writer {
         return *this;
     }
 
-   private:
+ private:
     std::uint8_t* to_;
 };
 
 class Reader {  // the caller has checked that the bytes are there
-   public:
+ public:
     explicit Reader(const std::uint8_t* from) : from_(from) {}
     template <class T>
     T get() {
@@ -35,7 +35,7 @@ class Reader {  // the caller has checked that the bytes are there
         value = get<T>();
     }
 
-   private:
+ private:
     const std::uint8_t* from_;
 };
 
@@ -87,36 +87,49 @@ std::optional<DecodeError> checkPicture(const FrameHeader& header, const Limits&
 
 std::size_t sampleBytes(Sample sample) {
     switch (sample) {
-        case Sample::U8: return 1;
-        case Sample::F16: return 2;
-        case Sample::F32: return 4;
+        case Sample::U8:
+            return 1;
+        case Sample::F16:
+            return 2;
+        case Sample::F32:
+            return 4;
     }
     return 0;
 }
 
 std::array<std::uint8_t, kFrameHeaderBytes> encodeHeader(const FrameHeader& header) {
     std::array<std::uint8_t, kFrameHeaderBytes> bytes;
+    // One line per row of the table in README.md.
+    // clang-format off
     Writer(bytes.data())
         .put(kFrameOp).put(kHeaderVersion).put(std::uint16_t(kFrameHeaderBytes))
-        .put(header.frameSeq).put(header.stream).put(header.epoch)
+        .put(header.frameSeq)
+        .put(header.stream).put(header.epoch)
         .put(std::uint8_t(header.target)).put(std::uint8_t(header.encoding))
         .put(std::uint8_t(header.sample)).put(std::uint8_t(header.layout))
         .put(header.flags)
-        .put(header.width).put(header.height).put(header.viewWidth).put(header.viewHeight)
+        .put(header.width).put(header.height)
+        .put(header.viewWidth).put(header.viewHeight)
         .put(header.bands).put(header.jpegQuality).put(header.level)
         .put(header.inputSeq).put(header.stateRev)
         .put(header.clientUs).put(header.serverUs)
         .put(header.holdUs).put(header.renderUs).put(header.encodeUs)
         .put(header.payloadLen).put(header.rawLen)
         .put(std::bit_cast<std::uint32_t>(header.scale));
+    // clang-format on
     return bytes;
 }
 
 std::array<std::uint8_t, kChunkHeaderBytes> encodeHeader(const ChunkHeader& header) {
     std::array<std::uint8_t, kChunkHeaderBytes> bytes;
     Writer(bytes.data())
-        .put(kChunkOp).put(kHeaderVersion).put(std::uint16_t(kChunkHeaderBytes))
-        .put(header.asset).put(header.offset).put(header.payloadLen).put(header.crc32);
+        .put(kChunkOp)
+        .put(kHeaderVersion)
+        .put(std::uint16_t(kChunkHeaderBytes))
+        .put(header.asset)
+        .put(header.offset)
+        .put(header.payloadLen)
+        .put(header.crc32);
     return bytes;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 // Builds the value as the parser reports it; stops at the first thing wrong.
 class Builder : public nlohmann::json_sax<Json> {
-   public:
+ public:
     explicit Builder(std::size_t maxDepth) : maxDepth_(maxDepth) {}
 
     Json root;
@@ -39,7 +39,7 @@ class Builder : public nlohmann::json_sax<Json> {
         return false;
     }
 
-   private:
+ private:
     // Elements of an open array may move when it grows, but only its last one is ever open.
     Json* place(Json value) {
         if (open_.empty()) return &(root = std::move(value));
@@ -69,11 +69,14 @@ class Builder : public nlohmann::json_sax<Json> {
 
 tl::expected<Json, DecodeError> parseText(std::string_view text, std::size_t maxBytes, std::size_t maxDepth) {
     if (text.size() > maxBytes)
-        return tl::unexpected(DecodeError{ErrorCode::TooLarge,
-                                          "the message has " + std::to_string(text.size()) + " bytes, the limit is " +
-                                              std::to_string(maxBytes),
-                                          {},
-                                          {}});
+        return tl::unexpected(DecodeError{
+            ErrorCode::TooLarge,
+            "the message has " + std::to_string(text.size()) + " bytes, the limit is " + std::to_string(maxBytes),
+            {},
+            {}});
+    // The parser takes a NUL for the end of its input and would not look at what follows.
+    if (text.find('\0') != std::string_view::npos)
+        return tl::unexpected(DecodeError{ErrorCode::BadMessage, "the message holds a NUL byte", {}, {}});
     Builder builder(maxDepth);
     if (Json::sax_parse(text, &builder)) return std::move(builder.root);
     return tl::unexpected(DecodeError{ErrorCode::BadMessage, builder.problem, {}, {}});

@@ -8,7 +8,7 @@
 
 namespace caustream::protocol {
 
-// Errors: too_large for the length, bad_message for the rest (syntax, UTF-8, numbers beyond a double, depth, duplicates).
+// Errors: too_large for the length; bad_message for syntax, UTF-8, numbers beyond a double, depth and duplicates.
 tl::expected<Json, DecodeError> parseText(std::string_view text, std::size_t maxBytes, std::size_t maxDepth);
 
 }  // namespace caustream::protocol

@@ -51,8 +51,7 @@ tl::expected<Json, DecodeError> replaceElement(Json array, const std::vector<std
         const std::string& digits = segments[i];
         const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), index);
         const bool isIndex = parsed.ec == std::errc() && parsed.ptr == digits.data() + digits.size();
-        if (!isIndex || !element->is_array())
-            return bad(path, "\"" + digits + "\" is not the index of an element");
+        if (!isIndex || !element->is_array()) return bad(path, "\"" + digits + "\" is not the index of an element");
         if (index >= element->size())
             return bad(path, "there are only " + std::to_string(element->size()) + " elements", ErrorCode::OutOfRange);
         element = &(*element)[index];
@@ -106,8 +105,8 @@ tl::expected<Json, DecodeError> setPath(const Json& document, std::string_view p
 Json sceneChange(const SceneRef& scene) {
     State shown;
     shown.scene = scene;
-    return {{"scene", toJson(shown)["scene"]}, {"lights", nullptr},      {"materials", nullptr},
-            {"camera", nullptr},               {"environment", nullptr}, {"outside_index", nullptr}};
+    return {{"scene", toJson(shown)["scene"]}, {"lights", nullptr},       {"materials", nullptr}, {"camera", nullptr},
+            {"environment", nullptr},          {"outside_index", nullptr}};
 }
 
 }  // namespace caustream::protocol

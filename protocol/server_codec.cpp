@@ -38,8 +38,8 @@ ServerMessage decodeOk(Fields& in) {
     Ok ok{requestId(in)};
     if (const auto v = in.find("rev")) ok.rev = v->u32();
     if (const auto v = in.find("credit"))
-        ok.offer = AssetOffer{in.at("asset").u32(), in.at("have").integer(0, kMaxSafeInteger),
-                              v->integer(0, kMaxSafeInteger)};
+        ok.offer =
+            AssetOffer{in.at("asset").u32(), in.at("have").integer(0, kMaxSafeInteger), v->integer(0, kMaxSafeInteger)};
     if (const auto v = in.find("sha256"))
         ok.report = AssetReport{v->sha256(), in.at("meshes").u32(), in.at("vertices").u32(), in.at("triangles").u32(),
                                 in.at("warnings").texts(kListCount, kSentenceBytes)};
@@ -51,8 +51,10 @@ ServerMessage decodeError(Fields& in) {
     ErrorMessage error;
     if (const auto v = in.find("id")) error.id = v->u32(1);
     const Item name = in.at("code");
-    if (const auto code = errorCodeOf(name.text(64))) error.code = *code;
-    else name.fail(ErrorCode::Unsupported, "is not a known error");
+    if (const auto code = errorCodeOf(name.text(64)))
+        error.code = *code;
+    else
+        name.fail(ErrorCode::Unsupported, "is not a known error");
     error.message = in.at("message").text(kSentenceBytes);
     if (const auto v = in.find("field")) error.field = v->text(kSentenceBytes);
     error.fatal = in.at("fatal").boolean();
@@ -229,10 +231,8 @@ std::string encode(const Pong& pong) {
 }
 
 std::string encode(const Status& status) {
-    return text({{"op", "status"},
-                 {"level", nameOf(kLevels, status.level)},
-                 {"key", status.key},
-                 {"message", status.message}});
+    return text(
+        {{"op", "status"}, {"level", nameOf(kLevels, status.level)}, {"key", status.key}, {"message", status.message}});
 }
 
 std::string encode(const Stats& stats) {

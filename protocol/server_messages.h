@@ -21,14 +21,14 @@ struct GlassPreset {
 };
 
 struct Welcome {
-    std::uint32_t id = 0;                    // of the hello
+    std::uint32_t id = 0;  // of the hello
     std::string session;
-    std::string server;                      // this server's id, for ?srv=
+    std::string server;  // this server's id, for ?srv=
     std::string protocol = "caustream.v1";
     std::string build;
-    std::string gpu;                         // the renderer's name
+    std::string gpu;  // the renderer's name
     bool resumed = false;
-    std::uint32_t rev = 0;                   // of `state`
+    std::uint32_t rev = 0;  // of `state`
     Json state = Json::object();
     std::vector<std::string> caps, scenes, passes;
     Limits limits;
@@ -38,27 +38,27 @@ struct Welcome {
     bool operator==(const Welcome&) const = default;
 };
 
-struct AssetOffer {                          // answers asset.begin
-    std::uint32_t asset = 0;                 // this connection's number for it
-    std::uint64_t have = 0;                  // bytes the server already holds: go on from there
-    std::uint64_t credit = 0;                // bytes that may be sent beyond `have`
+struct AssetOffer {            // answers asset.begin
+    std::uint32_t asset = 0;   // this connection's number for it
+    std::uint64_t have = 0;    // bytes the server already holds: go on from there
+    std::uint64_t credit = 0;  // bytes that may be sent beyond `have`
     bool operator==(const AssetOffer&) const = default;
 };
-struct AssetReport {                         // answers asset.end
+struct AssetReport {  // answers asset.end
     std::string sha256;
     std::uint32_t meshes = 0, vertices = 0, triangles = 0;
     std::vector<std::string> warnings;
     bool operator==(const AssetReport&) const = default;
 };
-struct FrameReply {                          // answers frame.request, just before the frame
+struct FrameReply {  // answers frame.request, just before the frame
     std::uint32_t frameSeq = 0;
-    std::string mapHash;                     // 16 hex digits
+    std::string mapHash;  // 16 hex digits
     bool operator==(const FrameReply&) const = default;
 };
 
 struct Ok {
     std::uint32_t id = 0;
-    std::optional<std::uint32_t> rev;        // answers update
+    std::optional<std::uint32_t> rev;  // answers update
     std::optional<AssetOffer> offer;
     std::optional<AssetReport> report;
     std::optional<FrameReply> frame;
@@ -70,13 +70,13 @@ struct ErrorMessage {
     ErrorCode code = ErrorCode::BadRequest;
     std::string message;
     std::optional<std::string> field;
-    bool fatal = false;                      // the connection closes after this
+    bool fatal = false;  // the connection closes after this
     std::optional<std::uint32_t> retryMs;
     bool operator==(const ErrorMessage&) const = default;
 };
 ErrorMessage errorMessage(const DecodeError& error, bool fatal = false);
 
-struct Box {                                 // m
+struct Box {  // m
     Vec3 min{}, max{};
     bool operator==(const Box&) const = default;
 };
@@ -108,30 +108,30 @@ struct SceneSummary {
     bool operator==(const SceneSummary&) const = default;
 };
 
-struct StateMessage {                        // after every scene change
+struct StateMessage {  // after every scene change
     std::uint32_t rev = 0;
-    Json state = Json::object();             // resolved: the file's values where nothing overrides them
+    Json state = Json::object();  // resolved: the file's values where nothing overrides them
     SceneSummary scene;
     bool operator==(const StateMessage&) const = default;
 };
 
-struct StreamInfo {                          // before an epoch's first frame
+struct StreamInfo {  // before an epoch's first frame
     std::uint16_t epoch = 0;
     Target target = Target::Composite;
-    std::string pass;                        // Target::Pass only
+    std::string pass;  // Target::Pass only
     Encoding encoding = Encoding::Jpeg;
     Sample sample = Sample::U8;
     Layout layout = Layout::Interleaved;
     std::uint32_t width = 0, height = 0, bands = 3;
     std::vector<double> wavelengthsNm;
-    std::array<double, 16> lightMatrix{};    // column-major, world -> map clip space
-    std::string unit;                        // "sRGB", "linear", "concentration"
+    std::array<double, 16> lightMatrix{};  // column-major, world -> map clip space
+    std::string unit;                      // "sRGB", "linear", "concentration"
     bool operator==(const StreamInfo&) const = default;
 };
 
 struct AssetCredit {
     std::uint32_t asset = 0;
-    std::uint64_t have = 0, credit = 0;      // as in AssetOffer
+    std::uint64_t have = 0, credit = 0;  // as in AssetOffer
     bool operator==(const AssetCredit&) const = default;
 };
 
@@ -143,7 +143,7 @@ struct Pong {
 struct Status {
     enum class Level { Info, Warning, Error };
     Level level = Level::Info;
-    std::string key, message;                // a later status of the same key replaces the earlier
+    std::string key, message;  // a later status of the same key replaces the earlier
     bool operator==(const Status&) const = default;
 };
 
@@ -158,21 +158,21 @@ struct PlanEntry {
     std::string reason;
     bool operator==(const PlanEntry&) const = default;
 };
-struct Ledger {                              // flux over the light's flux per steradian on its axis: sr (m^2: directional)
+struct Ledger {  // flux over the flux per steradian on the light's axis: sr (m^2 for a directional light)
     double onCasters = 0, deposited = 0, absorbed = 0, reflected = 0, totalReflection = 0, rejected = 0, leftMap = 0,
            noReceiver = 0;
     bool operator==(const Ledger&) const = default;
 };
-struct Stats {                               // of the newest frame
+struct Stats {  // of the newest frame
     std::uint32_t frameSeq = 0;
     std::vector<StageTime> stages;
     std::vector<PlanEntry> plan;
-    std::optional<Ledger> ledger;            // nothing: not counted for this frame
+    std::optional<Ledger> ledger;  // nothing: not counted for this frame
     std::uint32_t photons = 0;
     double renderMs = 0.0, encodeMs = 0.0;
-    std::uint32_t window = 0, dropped = 0;   // acknowledgement window; frames replaced before they were sent
-    double rttMs = 0.0;                      // 0: not known yet
-    double exposureEv = 0.0;                 // the one used
+    std::uint32_t window = 0, dropped = 0;  // acknowledgement window; frames replaced before they were sent
+    double rttMs = 0.0;                     // 0: not known yet
+    double exposureEv = 0.0;                // the one used
     std::vector<std::string> warnings;
     bool operator==(const Stats&) const = default;
 };
@@ -184,8 +184,8 @@ struct Goaway {
     bool operator==(const Goaway&) const = default;
 };
 
-using ServerMessage = std::variant<Welcome, Ok, ErrorMessage, StateMessage, StreamInfo, AssetCredit, Pong, Status, Stats,
-                                   Goaway>;
+using ServerMessage =
+    std::variant<Welcome, Ok, ErrorMessage, StateMessage, StreamInfo, AssetCredit, Pong, Status, Stats, Goaway>;
 
 // Never throws. Unknown fields are ignored.
 tl::expected<ServerMessage, DecodeError> decodeServerMessage(std::string_view text, const Limits& limits = {},

@@ -76,7 +76,9 @@ CameraSummary decodeCamera(const Item& item) {
     return camera;
 }
 
-Json toJson(const Box& box) { return {{"min", box.min}, {"max", box.max}}; }
+Json toJson(const Box& box) {
+    return {{"min", box.min}, {"max", box.max}};
+}
 
 }  // namespace
 

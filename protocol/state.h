@@ -1,5 +1,5 @@
-// The state document, typed: everything a client can ask of its picture. An absent optional means the scene file's value.
-// Lengths in metres, angles in degrees, wavelengths in nm; colours linear BT.709.
+// The state document, typed: everything a client can ask of its picture. An absent optional means the scene file's
+// value. Lengths in metres, angles in degrees, wavelengths in nm; colours linear BT.709.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -90,8 +90,8 @@ enum class LightType { Spot, Point, Directional };
 
 struct LightState {
     std::optional<LightType> type;
-    std::optional<Vec3> position;       // m
-    std::optional<Vec3> direction;      // the way the light travels; any length but 0
+    std::optional<Vec3> position;   // m
+    std::optional<Vec3> direction;  // the way the light travels; any length but 0
     std::optional<double> halfAngleDeg, innerAngleDeg;
     std::optional<Intensity> intensity;
     std::optional<Vec3> color;
@@ -109,7 +109,7 @@ struct MaterialState {
 struct CameraState {
     std::optional<Vec3> eye, target, up;
     std::optional<double> fovYDeg;
-    std::optional<double> exposureEv;   // exposure: ["auto"] | ["ev", v]; nothing: automatic
+    std::optional<double> exposureEv;  // exposure: ["auto"] | ["ev", v]; nothing: automatic
     bool operator==(const CameraState&) const = default;
 };
 
@@ -124,18 +124,18 @@ struct TransportState {                 // mode is "refined", the only one of th
     bool operator==(const TransportState&) const = default;
 };
 
-enum class Target : std::uint8_t { Composite = 1, Spectral = 2, Pass = 3 };     // values of the frame header
+enum class Target : std::uint8_t { Composite = 1, Spectral = 2, Pass = 3 };  // values of the frame header
 enum class Encoding : std::uint8_t { Jpeg = 1, Raw = 2, Zstd = 3, Png = 4 };
 enum class Sample : std::uint8_t { U8 = 1, F16 = 2, F32 = 3 };
 
 struct StreamState {
     Target target = Target::Composite;
-    std::string pass;                   // Target::Pass: its name, one of welcome.passes
+    std::string pass;  // Target::Pass: its name, one of welcome.passes
     Encoding encoding = Encoding::Jpeg;
     Sample sample = Sample::U8;
-    bool wavelengthBands = false;       // Target::Spectral: one band per wavelength instead of RGB
-    int width = 512, height = 512;      // of pictures; the spectral map has mapSize a side
-    std::optional<int> jpegQuality;     // nothing: automatic
+    bool wavelengthBands = false;    // Target::Spectral: one band per wavelength instead of RGB
+    int width = 512, height = 512;   // of pictures; the spectral map has mapSize a side
+    std::optional<int> jpegQuality;  // nothing: automatic
     double maxFps = 60.0;
     bool operator==(const StreamState&) const = default;
 };

@@ -53,16 +53,16 @@ Json toJson(const CameraState& camera) {
 }
 
 Json toJson(const TransportState& transport) {
-    return {{"mode", kTransportModes[0].name},
-            {"wavelengths",
-             transport.wavelengthsNm.empty() ? Json(transport.wavelengths) : Json(transport.wavelengthsNm)},
-            {"photon_grid", transport.photonGrid},
-            {"map_size", transport.mapSize},
-            {"back_steps", transport.backSteps},
-            {"receiver_steps", transport.receiverSteps},
-            {"gap_fill", transport.gapFill},
-            {"filter", transport.filter},
-            {"force_dispersive", transport.forceDispersive}};
+    return {
+        {"mode", kTransportModes[0].name},
+        {"wavelengths", transport.wavelengthsNm.empty() ? Json(transport.wavelengths) : Json(transport.wavelengthsNm)},
+        {"photon_grid", transport.photonGrid},
+        {"map_size", transport.mapSize},
+        {"back_steps", transport.backSteps},
+        {"receiver_steps", transport.receiverSteps},
+        {"gap_fill", transport.gapFill},
+        {"filter", transport.filter},
+        {"force_dispersive", transport.forceDispersive}};
 }
 
 Json toJson(const StreamState& stream) {

@@ -34,30 +34,38 @@ vec3 frustumEnd(vec3 pos, vec3 dir, out bool endless) {
     return endless ? vec3(viewToUv(u_view, dir), 0.0) : toImage(pos + length_ * dir);
 }
 
-// Radiance along the ray: bracketed secant (Illinois) on behind(), which is linear along a ray over any plane.
-vec3 seenAlong(vec3 pos, vec3 dir) {
+// Where a ray looks: a place in the picture, or (`astray` 1) out of it, where `fallback` stands in.
+struct Sight {
+    vec2 uv;
+    float astray;
+    vec3 fallback;
+};
+
+// Bracketed secant (Illinois) on behind(), which is linear along a ray over any plane.
+Sight look(vec3 pos, vec3 dir) {
     bool endless;
     vec3 a = toImage(pos), b = frustumEnd(pos, dir, endless);
-    float fa = behind(a), fb = behind(b);
+    bool inPicture = all(lessThanEqual(abs(a.xy - 0.5), vec2(0.5)));
+    float fa = behind(a), fb = behind(b), side = 0.0;
     bool leaves = fb < 0.0 && !endless;
-    bool inside = all(lessThanEqual(abs(a.xy - 0.5), vec2(0.5)));
     vec3 hit = fa >= 0.0 ? a : b;
-    float side = 0.0;
     bool search = fa < 0.0 && fb > 0.0;
-    for (int i = 0; i < u_receiverSteps && search; ++i) {
-        hit = mix(a, b, fa / (fa - fb));
-        float f = behind(hit);
-        if (f < 0.0) {
-            a = hit;
-            fa = f;
-            fb *= side < 0.0 ? 0.5 : 1.0;
-            side = -1.0;
-        } else {
-            b = hit;
-            fb = f;
-            fa *= side > 0.0 ? 0.5 : 1.0;
-            side = 1.0;
-        }
+    for (int i = 0; i < u_receiverSteps; ++i) {
+        vec3 at = search ? mix(a, b, fa / (fa - fb)) : hit;
+        float f = behind(at);
+        hit = at;
+        bool before = f < 0.0;
+        a = before ? at : a;
+        b = before ? b : at;
+        fb = before ? (side < 0.0 ? 0.5 * fb : fb) : f;
+        fa = before ? f : (side > 0.0 ? 0.5 * fa : fa);
+        side = before ? -1.0 : 1.0;
     }
-    return !inside || leaves ? surroundings(dir) : textureLod(u_background, hit.xy, 0.0).rgb;
+    return Sight(hit.xy, !inPicture || leaves ? 1.0 : 0.0, surroundings(dir));
+}
+
+// What is seen at `f` of the way from one sight to another.
+vec3 radiance(Sight from, Sight to, float f) {
+    vec3 seen = textureLod(u_background, mix(from.uv, to.uv, f), 0.0).rgb;
+    return mix(seen, mix(from.fallback, to.fallback, f), mix(from.astray, to.astray, f));
 }

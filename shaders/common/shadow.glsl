@@ -13,14 +13,14 @@ float raisedLayer(View view, vec3 pos, vec3 normal, vec2 texelSize, float texels
     float layer = view.perspective ? view.near / max(-pos.z, 1e-20) : 1.0 - (-pos.z - view.near) / (view.far - view.near);
     float slope = texels * dot(abs(layerGradient(view, pos, normal)), texelSize);
     float rounding = 4e-5 * (view.perspective ? layer : 1.0);  // of 32-bit depth and of the interpolated position
-    return layer + rounding + min(slope, 0.25 * abs(layer) + rounding);
+    return layer + rounding + min(slope, abs(layer) + rounding);
 }
 
 // 1 lit, 0 in shadow; outside the view everything is lit. Four filtered taps: an edge about two texels wide.
 float visibility(sampler2DShadow depths, View view, vec3 pos, vec3 normal) {
     vec2 texel = 1.0 / vec2(textureSize(depths, 0));
     vec2 uv = viewToUv(view, pos);
-    float layer = raisedLayer(view, pos, normal, texel, 1.5);
+    float layer = raisedLayer(view, pos, normal, texel, 1.75);
     vec4 covered = vec4(texture(depths, vec3(uv + texel * vec2(-0.25, -0.75), layer)),
                         texture(depths, vec3(uv + texel * vec2(0.75, -0.25), layer)),
                         texture(depths, vec3(uv + texel * vec2(0.25, 0.75), layer)),

@@ -27,6 +27,7 @@ uniform sampler2D u_map, u_outerMap;
 #if FULL
 uniform int u_lightCount;
 uniform float u_roughness, u_metallic;
+uniform float u_gloss;               // 0: Lambert alone
 uniform bool u_hasCookie;
 uniform View u_cookieView;
 uniform sampler2D u_cookie;
@@ -69,13 +70,13 @@ void main() {
 #if FULL
     vec3 F0 = mix(vec3(0.04), base, u_metallic);
     diffuse *= 1.0 - u_metallic;
-    radiance += key * highlight(normal, toEye, toKey.xyz, u_roughness, F0);
+    radiance += u_gloss * key * highlight(normal, toEye, toKey.xyz, u_roughness, F0);
     radiance += u_environment * F0 * u_metallic;
     for (int i = 1; i < u_lightCount; ++i) {
         vec4 to = towardsLight(u_lights[i], v_world);
         vec3 arriving = u_lights[i].rgb * to.w * coneFactor(u_lights[i], to.xyz);
         irradiance += arriving * max(dot(normal, to.xyz), 0.0);
-        radiance += arriving * highlight(normal, toEye, to.xyz, u_roughness, F0);
+        radiance += u_gloss * arriving * highlight(normal, toEye, to.xyz, u_roughness, F0);
     }
 #endif
     // A hemisphere a little brighter from above and from one side, so that corners read in the dark; its mean is 1.

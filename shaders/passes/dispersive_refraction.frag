@@ -1,120 +1,153 @@
-// A caster as the camera sees it. Per wavelength: refract at the front layer, walk to the back layer, absorb, refract out,
-// look into the receivers' picture. What reflects inside (all of it beyond the critical angle) goes on as one ray of mean
-// direction through both layers for a few bounces; every share ends in some colour, so shares always sum to 1.
-#include "common/view.glsl"
-#include "common/optics.glsl"
-#include "common/layer.glsl"
-#include "common/picture.glsl"
+// A caster as the camera sees it. A few nodes (exact indices: the lowest, the middle, the highest) are traced: refract at
+// the front layer, walk to the back layer, refract out, search the receivers' picture. Wavelengths between two nodes look
+// where interpolation puts them, each with its own colour and absorption: the cost hardly grows with their number. What
+// reflects inside (all of it beyond the critical angle) goes on as one ray of mean direction through both layers for a
+// few bounces. Every share ends in some colour, so shares always sum to 1: no black holes.
 #include "common/lights.glsl"
-const int kBounces = 3;
-const int kBounceSteps = 3;            // Newton steps of one bounce
+#include "common/optics.glsl"
+#include "common/picture.glsl"
 uniform sampler2D u_front, u_back;     // xyz outward normal, w layer value; undefined outside u_box
 uniform vec4 u_box;                    // uv: lowest and highest place a filtered lookup may be made
-uniform int u_backSteps;
 uniform float u_diameter;              // no way through the caster is longer, m
 uniform Light u_key;                   // position and direction in view space; rgb over the reference irradiance
 #if THIN
 uniform vec3 u_tint;
 #else
-uniform int u_count;
-uniform vec4 u_wavelengths[64];        // rgb weight, relative index
+uniform int u_backSteps;               // Newton steps of the first way through
+uniform int u_bounces;                 // interfaces met after the second
+uniform int u_nodeCount;
+uniform vec4 u_nodes[3];               // relative index, absorption (1/m), wavelengths up to it: first, one past the last
+uniform vec4 u_wavelengths[64];        // rgb weight; place between its nodes, 0..1
 uniform float u_absorption[64];        // 1/m
 #endif
 layout(location = 0) out vec4 o_radiance;
 
-// Newton on a layer's planes from `t` on; false when no exit lies ahead. `normal` is the outward normal there.
-bool walk(sampler2D layer, vec3 pos, vec3 dir, int steps, inout float t, out vec3 normal) {
-    bool found = false;
-    normal = -dir;
-    for (int i = 0; i < steps; ++i) {
-        vec2 uv = clamp(viewToUv(u_view, pos + t * dir), u_box.xy, u_box.zw);
-        vec4 at;
-        bool surface = sampleLayer(layer, uv, at);
-        float slope = dot(dir, at.xyz);
-        surface = surface && slope > 1e-3;
-        float next = dot(layerToView(u_view, uv, at.w) - pos, at.xyz) / slope;
-        normal = surface ? at.xyz : normal;
-        found = found || surface;
-        t = surface ? clamp(next, 0.0, u_diameter) : 0.6 * t;
-    }
-    return found && t > 0.0;
-}
-
 // The key light in the front surface: a tight lobe of bounded height around the mirror direction.
-vec3 keyHighlight(vec3 pos, vec3 mirrored, float reflectance) {
+vec3 keyHighlight(vec3 pos, vec3 mirrored, vec3 reflectance) {
     vec4 to = towardsLight(u_key, pos);
     float lobe = exp(-900.0 * (1.0 - dot(mirrored, to.xyz)));  // about 3 degrees across
     vec3 irradiance = u_key.rgb * to.w * coneFactor(u_key, to.xyz);
-    return min(irradiance, vec3(4.0)) * (60.0 * reflectance * lobe);
+    return min(irradiance, vec3(4.0)) * reflectance * (60.0 * lobe);
 }
 
+#if !THIN
+// Newton on a layer's planes from `t` on, nearest texels: off by no more than the surface bends within half a texel. The
+// normal decides where the ray goes on, so it is filtered; empty texels hold zeros and drop out. False when no exit lies
+// ahead.
+bool walk(sampler2D layer, vec3 pos, vec3 dir, int steps, inout float t, out vec3 normal) {
+    bool found = false;
+    vec2 size = vec2(textureSize(layer, 0)), texel;
+    for (int i = 0; i < steps; ++i) {
+        texel = floor(clamp(viewToUv(u_view, pos + t * dir), u_box.xy, u_box.zw) * size);
+        vec4 at = texelFetch(layer, ivec2(texel), 0);
+        float slope = dot(dir, at.xyz);
+        bool surface = at.w > 0.0 && slope > 1e-3;
+        float next = dot(layerToView(u_view, (texel + 0.5) / size, at.w) - pos, at.xyz) / slope;
+        t = surface ? clamp(next, 0.0, u_diameter) : 0.6 * t;
+        found = found || surface;
+    }
+    normal = textureLod(layer, clamp(viewToUv(u_view, pos + t * dir), u_box.xy, u_box.zw), 0.0).xyz;
+    normal = normalize(normal + 1e-6 * dir);
+    return found && t > 0.0 && dot(normal, dir) > 0.0;
+}
+
+struct Node {
+    Sight sight;        // what is seen where the ray comes out
+    vec3 exit, inside;  // last point and direction inside
+    vec3 normal;        // outward, there
+    float front, back;  // reflectances
+    float length_;      // of the way through, m
+};
+
+Node traceNode(float index, vec3 pos, vec3 dir, vec3 normal, float guess) {
+    Node node;
+    vec3 outside;
+    refractDielectric(dir, normal, 1.0 / index, node.inside, node.front);
+    node.inside = node.front < 1.0 ? node.inside : dir;
+    node.length_ = guess;
+    bool found = walk(u_back, pos, node.inside, u_backSteps, node.length_, node.normal);
+    node.normal = found ? node.normal : -normal;  // no way through that the layers know: a thin plate's
+    node.exit = pos + node.length_ * node.inside;
+    bool leaves = refractDielectric(node.inside, -node.normal, index, outside, node.back);
+    node.sight = look(node.exit, leaves ? outside : node.inside);
+    return node;
+}
+#endif
+
 void main() {
-    vec2 uv = gl_FragCoord.xy / vec2(textureSize(u_background, 0));
-    vec4 front = texelFetch(u_front, ivec2(gl_FragCoord.xy), 0);
-    if (front.w <= texelFetch(u_receiversDepth, ivec2(gl_FragCoord.xy), 0).r) discard;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 front = texelFetch(u_front, pixel, 0);
+    if (front.w <= texelFetch(u_receiversDepth, pixel, 0).r) discard;
 
     // An interpolated normal may turn away at the silhouette; it is bent back until it grazes.
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(u_background, 0));
     vec3 pos = layerToView(u_view, uv, front.w), sight = viewDirection(u_view, uv);
-    vec3 normal = front.xyz;
-    normal = normalize(normal - sight * max(dot(normal, sight) + 0.02, 0.0));
-    vec3 mirrored = reflect(sight, normal);
+    vec3 normal = normalize(front.xyz - sight * max(dot(front.xyz, sight) + 0.02, 0.0));
+    vec3 mirrored = reflect(sight, normal), color = vec3(0.0);
 
 #if THIN
     vec3 inside;
     float surface;
     refractDielectric(sight, normal, 1.0 / 1.5, inside, surface);
-    float both = 2.0 * surface / (1.0 + surface);  // two faces of a plate, all reflections between them
-    vec3 color = texelFetch(u_background, ivec2(gl_FragCoord.xy), 0).rgb * u_tint * (1.0 - both);
-    color += both * seenAlong(pos, mirrored) + keyHighlight(pos, mirrored, both);
+    vec3 reflected = vec3(2.0 * surface / (1.0 + surface));  // two faces of a plate and all reflections between them
+    color += texelFetch(u_background, pixel, 0).rgb * u_tint * (1.0 - reflected);
 #else
-    // First way through, wavelength by wavelength.
-    vec4 back = texelFetch(u_back, ivec2(gl_FragCoord.xy), 0);
-    float through = back.w > 0.0 ? max(layerToDepth(u_view, back.w) + pos.z, 0.0) : 0.0;
-    float guess = through > 0.0 ? through / max(-sight.z, 1e-3) : 0.05 * u_diameter;
-    vec3 color = vec3(0.0), reflected = vec3(0.0), kept = vec3(0.0);
-    vec4 keptPos = vec4(0.0);                       // and their sum of weights, to find the mean ray
-    vec3 keptDir = vec3(0.0);
-    vec2 keptGlass = vec2(0.0);                     // index, absorption
-    for (int i = 0; i < u_count; ++i) {
-        vec3 weight = u_wavelengths[i].rgb;
-        float index = u_wavelengths[i].w, R1, R2, t = guess;
-        vec3 inside, outside, exitNormal;
-        refractDielectric(sight, normal, 1.0 / index, inside, R1);
-        reflected += weight * R1;
-        if (R1 >= 1.0) continue;
-        bool found = walk(u_back, pos, inside, u_backSteps, t, exitNormal);
-        vec3 exit = pos + t * inside;
-        if (!found) exitNormal = -normal;           // no way through that the layers know: a thin plate's
-        bool leaves = refractDielectric(inside, -exitNormal, index, outside, R2);
-        vec3 arriving = weight * (1.0 - R1) * exp(-u_absorption[i] * t);
-        color += arriving * (1.0 - R2) * seenAlong(exit, leaves ? outside : inside);
-        kept += arriving * R2;
-        float share = max(dot(abs(arriving), vec3(1.0)) * R2, 1e-12);
-        keptPos += share * vec4(exit, 1.0);
-        keptDir += share * reflect(inside, exitNormal);
-        keptGlass += share * vec2(index, u_absorption[i]);
+    // First guess of the way through: straight on.
+    float backLayer = texelFetch(u_back, pixel, 0).w;
+    float through = (layerToDepth(u_view, backLayer) + pos.z) / max(-sight.z, 1e-3);
+    float guess = backLayer > 0.0 && through > 0.0 ? min(through, u_diameter) : 0.05 * u_diameter;
+
+    // From node to node, and the wavelengths between.
+    vec3 reflected = vec3(0.0), kept = vec3(0.0);
+    vec4 mean = vec4(0.0), meanExit = vec4(0.0);  // of what stays inside: direction, absorption; exit, weight
+    float meanIndex = 0.0;
+    Node a, b;
+    for (int n = 0; n < u_nodeCount; ++n) {
+        a = b;
+        b = traceNode(u_nodes[n].x, pos, sight, normal, guess);
+        if (n == 0) a = b;
+        Sight from = a.back < 1.0 ? a.sight : b.sight, to = b.back < 1.0 ? b.sight : a.sight;
+        bool together = distance(from.uv, to.uv) < 0.15;
+        float nodeKept = 1e-9;
+        for (int i = int(u_nodes[n].z); i < int(u_nodes[n].w); ++i) {
+            float f = u_wavelengths[i].w, R1 = mix(a.front, b.front, f), R2 = mix(a.back, b.back, f);
+            vec3 weight = u_wavelengths[i].rgb;
+            vec3 arriving = weight * ((1.0 - R1) * exp(-u_absorption[i] * mix(a.length_, b.length_, f)));
+            reflected += weight * R1;
+            color += arriving * (1.0 - R2) * radiance(from, to, together ? f : step(0.5, f));
+            kept += arriving * R2;
+            nodeKept += R2;
+        }
+        meanExit += nodeKept * vec4(b.exit, 1.0);
+        mean += nodeKept * vec4(reflect(b.inside, b.normal), u_nodes[n].y);
+        meanIndex += nodeKept * u_nodes[n].x;
     }
 
     // What is still inside, as one ray.
-    vec3 at = keptPos.xyz / max(keptPos.w, 1e-20), dir = normalize(keptDir + 1e-20 * sight);
-    float index = keptGlass.x / max(keptPos.w, 1e-20), absorption = keptGlass.y / max(keptPos.w, 1e-20);
-    for (int bounce = 0; bounce < kBounces; ++bounce) {
+    vec3 at = meanExit.xyz / meanExit.w, dir = normalize(mean.xyz + 1e-9 * sight);
+    float index = meanIndex / meanExit.w, absorption = mean.w / meanExit.w;
+    for (int bounce = 0; bounce < u_bounces; ++bounce) {
         float toFront = 0.4 * u_diameter, toBack = toFront, R;
         vec3 frontNormal, backNormal, outside;
-        bool onFront = walk(u_front, at, dir, kBounceSteps, toFront, frontNormal) && toFront > 1e-3 * u_diameter;
-        bool onBack = walk(u_back, at, dir, kBounceSteps, toBack, backNormal) && toBack > 1e-3 * u_diameter;
-        if (!onFront && !onBack) break;
+        bool onFront = walk(u_front, at, dir, 3, toFront, frontNormal) && toFront > 1e-3 * u_diameter;
+        bool onBack = walk(u_back, at, dir, 3, toBack, backNormal) && toBack > 1e-3 * u_diameter;
         bool takesFront = onFront && (!onBack || toFront < toBack);
+        if (!(onFront || onBack)) break;
         float t = takesFront ? toFront : toBack;
         vec3 exitNormal = takesFront ? frontNormal : backNormal;
         at += t * dir;
         kept *= exp(-absorption * t);
-        if (refractDielectric(dir, -exitNormal, index, outside, R)) color += kept * (1.0 - R) * seenAlong(at, outside);
+        if (refractDielectric(dir, -exitNormal, index, outside, R)) {
+            Sight seen = look(at, outside);
+            color += kept * (1.0 - R) * radiance(seen, seen, 0.0);
+        }
         kept *= R;
         dir = reflect(dir, exitNormal);
+        if (max(kept.r, max(kept.g, kept.b)) < 0.02) break;
     }
     color += kept * surroundings(dir);
-    color += reflected * seenAlong(pos, mirrored) + keyHighlight(pos, mirrored, dot(reflected, vec3(1.0 / 3.0)));
 #endif
+    Sight mirror = look(pos, mirrored);
+    color += reflected * radiance(mirror, mirror, 0.0) + keyHighlight(pos, mirrored, reflected);
     o_radiance = vec4(clamp(color, vec3(-6e4), vec3(6e4)), 1.0);
 }

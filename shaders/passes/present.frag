@@ -15,7 +15,7 @@ vec3 shown(ivec2 at) {
 #elif MODE == 1
     return value.rgb * u_scale;
 #elif MODE == 2
-    return value.w > 0.0 ? 0.5 + 0.5 * value.xyz : vec3(0.0);
+    return value.w > 0.0 ? clamp(0.5 + 0.5 * value.xyz, 0.0, 1.0) : vec3(0.0);
 #elif MODE == 3
     return layerColour(u_depthImage ? value.r : value.w);
 #elif MODE == 4

@@ -72,7 +72,8 @@ void CameraReceivers::setMaterial(const Inputs& in, const scene::Material& mater
     uniforms.set("u_baseColor", glm::vec3(material.baseColor))
         .set("u_emissive", material.emissive / radianceUnit(in.lighting))
         .set("u_roughness", material.roughness)
-        .set("u_metallic", material.metallic);
+        .set("u_metallic", material.metallic)
+        .set("u_gloss", glossy(material) ? 1.0f : 0.0f);
     if (material.baseColorTexture >= 0) glBindTextureUnit(kBaseColor, in.scene.texture(material.baseColorTexture));
 }
 

@@ -1,10 +1,12 @@
 #include "render/passes/dispersive_refraction.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "gl/uniforms.h"
 #include "render/light_uniforms.h"
+#include "../shaders/shared/layout.h"
 
 namespace caustream::render {
 
@@ -15,14 +17,29 @@ enum Unit : int { kFront, kBack, kReceiversDepth, kBackground, kSurroundingsUnit
 
 std::vector<gl::Flag> flags(bool thin) { return {{"THIN", thin}}; }
 
+// Nodes are the first, the middle and the last wavelength (fewer when there are fewer). A wavelength belongs to the node
+// at or after it and lies between that and the one before by its index.
 void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& glass) {
-    std::vector<glm::vec4> wavelengths;
+    const auto& all = glass.wavelengths;
+    const std::size_t count = std::min<std::size_t>(all.size(), layout::kMostWavelengths);
+    std::vector<std::size_t> nodes{0};
+    if (count > 2) nodes.push_back(count / 2);
+    if (count > 1) nodes.push_back(count - 1);
+
+    std::vector<glm::vec4> nodeValues, wavelengths;
     std::vector<float> absorption;
-    for (const auto& wavelength : glass.wavelengths) {
-        wavelengths.emplace_back(wavelength.rgb, wavelength.index);
-        absorption.push_back(wavelength.absorptionPerM);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const std::size_t first = n == 0 ? 0 : nodes[n - 1] + 1, end = nodes[n] + 1;
+        const float from = n == 0 ? 0.0f : all[nodes[n - 1]].index, range = all[nodes[n]].index - from;
+        for (std::size_t i = first; i < end; ++i) {
+            const float place = std::abs(range) > 1e-6f ? (all[i].index - from) / range : 1.0f;
+            wavelengths.emplace_back(all[i].rgb, std::clamp(place, 0.0f, 1.0f));
+            absorption.push_back(all[i].absorptionPerM);
+        }
+        nodeValues.emplace_back(all[nodes[n]].index, all[nodes[n]].absorptionPerM, float(first), float(end));
     }
-    uniforms.set("u_count", static_cast<int>(wavelengths.size()))
+    uniforms.set("u_nodeCount", static_cast<int>(nodes.size()))
+        .set("u_nodes", std::span<const glm::vec4>(nodeValues))
         .set("u_wavelengths", std::span<const glm::vec4>(wavelengths))
         .set("u_absorption", std::span<const float>(absorption));
 }
@@ -86,6 +103,7 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
         .set("u_background", kBackground)
         .set("u_surroundings", kSurroundingsUnit)
         .set("u_backSteps", settings.backSteps)
+        .set("u_bounces", settings.bounces)
         .set("u_receiverSteps", settings.receiverSteps)
         .set("u_diameter", glm::length(in.bounds.max - in.bounds.min))
         .set("u_tint", in.glass.tint);
@@ -95,10 +113,10 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
     const GLuint textures[] = {in.front.get(), in.back.get(), in.receiversDepth.get(), background_.get(),
                                surroundings_.get()};
     glBindTextures(0, 5, textures);
-    for (const int unit : {kReceiversDepth, kBackground, kSurroundingsUnit}) glBindSampler(unit, linear_.get());
+    for (GLuint unit = 0; unit < 5; ++unit) glBindSampler(unit, linear_.get());
     glBindVertexArray(vertexArray_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    for (const int unit : {kReceiversDepth, kBackground, kSurroundingsUnit}) glBindSampler(unit, 0);
+    glBindSamplers(0, 5, nullptr);
     glDisable(GL_SCISSOR_TEST);
 
     // The next caster sees this one.

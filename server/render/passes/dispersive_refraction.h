@@ -39,7 +39,8 @@ class DispersiveRefraction {
     };
     struct Settings {
         int backSteps = 4;                    // Newton steps to the exit point, 1..16
-        int receiverSteps = 6;                // steps of the search in the receivers' picture, 1..32
+        int receiverSteps = 4;                // steps of the search in the receivers' picture, 1..32
+        int bounces = 2;                      // interfaces met inside after the second, 0..16
     };
 
     explicit DispersiveRefraction(gl::ShaderLibrary& shaders);
