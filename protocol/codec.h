@@ -12,7 +12,7 @@ namespace caustream::protocol {
 
 inline constexpr std::size_t kTextBytes = 512;  // identities, hints: short texts that people write
 inline constexpr std::size_t kSentenceBytes = 4096;
-inline constexpr std::size_t kListCount = 1024;  // names in one list of a server's message
+inline constexpr std::size_t kListCount = 1u << 20;  // of a server's lists; the text's own limit comes first
 
 template <class Message>
 struct Op {

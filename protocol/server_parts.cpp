@@ -52,14 +52,14 @@ Box decodeBox(const Item& item) {
 
 MaterialSummary decodeMaterial(const Item& item) {
     Fields in(item);
-    MaterialSummary material{in.at("name").text(kTextBytes), in.at("caster").boolean()};
+    MaterialSummary material{in.at("name").text(kSentenceBytes), in.at("caster").boolean()};
     in.finish();
     return material;
 }
 
 LightSummary decodeLight(const Item& item) {
     Fields in(item);
-    LightSummary light{in.at("name").text(kTextBytes), in.at("type").oneOf(kLightTypes)};
+    LightSummary light{in.at("name").text(kSentenceBytes), in.at("type").oneOf(kLightTypes)};
     in.finish();
     return light;
 }
@@ -67,7 +67,7 @@ LightSummary decodeLight(const Item& item) {
 CameraSummary decodeCamera(const Item& item) {
     Fields in(item);
     CameraSummary camera;
-    camera.name = in.at("name").text(kTextBytes);
+    camera.name = in.at("name").text(kSentenceBytes);
     camera.eye = in.at("eye").vec3(-kAnyNumber, kAnyNumber);
     camera.target = in.at("target").vec3(-kAnyNumber, kAnyNumber);
     camera.up = in.at("up").vec3(-kAnyNumber, kAnyNumber);
@@ -116,12 +116,12 @@ Json toJson(const Ledger& ledger) {
 SceneSummary decodeSceneSummary(const Item& item) {
     Fields in(item);
     SceneSummary scene;
-    scene.name = in.at("name").text(kTextBytes);
+    scene.name = in.at("name").text(kSentenceBytes);
     if (const auto v = in.find("bounds")) scene.bounds = decodeBox(*v);
     if (const auto v = in.find("caster_bounds")) scene.casterBounds = decodeBox(*v);
     scene.triangles = in.at("triangles").u32();
-    scene.casters = in.at("casters").texts(kListCount, kTextBytes);
-    scene.receivers = in.at("receivers").texts(kListCount, kTextBytes);
+    scene.casters = in.at("casters").texts(kListCount, kSentenceBytes);
+    scene.receivers = in.at("receivers").texts(kListCount, kSentenceBytes);
     scene.materials = decodeList(in.at("materials"), decodeMaterial);
     scene.lights = decodeList(in.at("lights"), decodeLight);
     scene.cameras = decodeList(in.at("cameras"), decodeCamera);

@@ -7,8 +7,10 @@
 namespace caustream::protocol {
 namespace {
 
-constexpr double kFarM = 1e6;           // positions, each coordinate
-constexpr std::size_t kMaxNamed = 256;  // lights, or materials, in one document
+// As wide as what a scene file may hold: the resolved document of every scene that loads must decode.
+constexpr double kFarM = 1e9;                // positions, each coordinate
+constexpr double kMaxHalfAngleDeg = 90.001;  // files write pi/2 as 1.5708
+constexpr std::size_t kMaxNamed = 4096;      // lights, or materials, in one document
 
 LightState decodeLight(const Item& item) {
     Fields in(item);
@@ -16,14 +18,14 @@ LightState decodeLight(const Item& item) {
     if (const auto v = in.find("type")) light.type = v->oneOf(kLightTypes);
     if (const auto v = in.find("position")) light.position = v->vec3(-kFarM, kFarM);
     if (const auto v = in.find("direction")) light.direction = v->direction();
-    if (const auto v = in.find("half_angle_deg")) light.halfAngleDeg = v->number(0.01, 89.9);
+    if (const auto v = in.find("half_angle_deg")) light.halfAngleDeg = v->number(1e-6, kMaxHalfAngleDeg);
     if (const auto v = in.find("inner_angle_deg")) {
-        light.innerAngleDeg = v->number(0, 89.9);
+        light.innerAngleDeg = v->number(0, kMaxHalfAngleDeg);
         if (light.halfAngleDeg && *light.innerAngleDeg > *light.halfAngleDeg)
             v->fail(ErrorCode::OutOfRange, "must not be larger than half_angle_deg");
     }
     if (const auto v = in.find("intensity")) light.intensity = decodeIntensity(*v);
-    if (const auto v = in.find("color")) light.color = v->vec3(0, 1);
+    if (const auto v = in.find("color")) light.color = v->vec3(0, 1e6);
     if (const auto v = in.find("spectrum")) light.spectrum = decodeSpectrum(*v);
     if (const auto v = in.find("cookie")) light.cookie = decodeCookie(*v);
     in.finish();
@@ -47,7 +49,7 @@ std::map<std::string, T> decodeNamed(const Item& item, T (*decodeOne)(const Item
         item.fail(ErrorCode::BadRequest, "must be an object");
         return named;
     }
-    if (item.json().size() > kMaxNamed) item.fail(ErrorCode::OutOfRange, "has more than 256 members");
+    if (item.json().size() > kMaxNamed) item.fail(ErrorCode::OutOfRange, "has more than 4096 members");
     for (const auto& [name, value] : item.json().get_ref<const Json::object_t&>()) {
         const Item child(&value, &item, name, 0, item.decoding());
         if (name.empty() || name.size() > kNameBytes)
@@ -171,7 +173,7 @@ tl::expected<State, DecodeError> decodeState(const Json& document, const Limits&
     if (const auto v = in.find("camera")) state.camera = decodeCamera(*v);
     if (const auto v = in.find("environment")) {
         Fields environment(*v);
-        if (const auto color = environment.find("color")) state.environmentColor = color->vec3(0, 100);
+        if (const auto color = environment.find("color")) state.environmentColor = color->vec3(0, 1e6);
         environment.finish();
     }
     if (const auto v = in.find("outside_index")) state.outsideIndex = v->number(1, 5);

@@ -6,7 +6,8 @@
 namespace caustream::protocol {
 namespace {
 
-constexpr std::size_t kMaxKnots = 256;  // of an absorption table
+constexpr double kMaxIndex = 10.0;
+constexpr std::size_t kMaxKnots = 1024;  // of an absorption table
 
 constexpr double kBandMinUm2 = kBandMinNm * kBandMinNm * 1e-6, kBandMaxUm2 = kBandMaxNm * kBandMaxNm * 1e-6;
 
@@ -55,7 +56,7 @@ Spectrum decodeSpectrum(const Item& item) {
 
 Intensity decodeIntensity(const Item& item) {
     if (item.size(2, 2) == 0) return {};
-    return {item[0].oneOf(kIntensityUnits), item[1].number(0, 1e9)};
+    return {item[0].oneOf(kIntensityUnits), item[1].number(0, 1e12)};
 }
 
 Cookie decodeCookie(const Item& item) {
@@ -68,10 +69,10 @@ Cookie decodeCookie(const Item& item) {
 Absorption decodeAbsorption(const Item& item) {
     if (item.size(2, 2) == 0) return {};
     Absorption absorption;
-    absorption.nm = item[0].ascending(0, kMaxKnots, 100, 10000);
+    absorption.nm = item[0].ascending(0, kMaxKnots, 0, 1e6);
     const Item perM = item[1];
     const std::size_t count = perM.size(absorption.nm.size(), absorption.nm.size());
-    for (std::size_t i = 0; i < count; ++i) absorption.perM.push_back(perM[i].number(0, 1e6));
+    for (std::size_t i = 0; i < count; ++i) absorption.perM.push_back(perM[i].number(0, 1e12));
     return absorption;
 }
 
@@ -81,22 +82,22 @@ Dispersion decodeDispersion(const Item& item) {
     Dispersion dispersion;
     switch (item[0].oneOf(kDispersions)) {
         case 0:
-            if (item.size(2, 2)) dispersion = ConstantIndex{item[1].number(1, 5)};
+            if (item.size(2, 2)) dispersion = ConstantIndex{item[1].number(1, kMaxIndex)};
             break;
         case 1:
             if (item.size(3, 4))
-                dispersion =
-                    Cauchy{item[1].number(0.5, 5), item[2].number(-1, 1), count == 4 ? item[3].number(-1, 1) : 0};
+                dispersion = Cauchy{item[1].number(-100, 100), item[2].number(-100, 100),
+                                    count == 4 ? item[3].number(-100, 100) : 0};
             break;
         case 2:
-            if (item.size(3, 3)) dispersion = Abbe{item[1].number(1, 5), item[2].number(1, 1e6)};
+            if (item.size(3, 3)) dispersion = Abbe{item[1].number(1, kMaxIndex), item[2].number(1e-3, 1e12)};
             break;
         default:
             if (item.size(7, 7)) {
                 Sellmeier sellmeier;
                 for (std::size_t i = 0; i < 3; ++i) {
-                    sellmeier.B[i] = item[1 + i].number(-100, 100);
-                    const double c = sellmeier.C_um2[i] = item[4 + i].number(-1e4, 1e4);
+                    sellmeier.B[i] = item[1 + i].number(-1e3, 1e3);
+                    const double c = sellmeier.C_um2[i] = item[4 + i].number(-1e6, 1e6);
                     if (c >= kBandMinUm2 && c <= kBandMaxUm2)
                         item[4 + i].fail(ErrorCode::OutOfRange, "puts a resonance between 380 and 680 nm");
                 }
@@ -107,8 +108,8 @@ Dispersion decodeDispersion(const Item& item) {
     const bool isClamped = std::holds_alternative<Abbe>(dispersion);
     for (double nm = kBandMinNm; nm <= kBandMaxNm; nm += 1.0) {
         const double n = indexAt(dispersion, nm);
-        if (!(n >= (isClamped ? -1e9 : 1.0) && n <= 6.0)) {
-            item.fail(ErrorCode::OutOfRange, "the index must stay within 1 to 6 between 380 and 680 nm");
+        if (!(n >= (isClamped ? -1e9 : 1.0) && n <= kMaxIndex)) {
+            item.fail(ErrorCode::OutOfRange, "the index must stay within 1 to 10 between 380 and 680 nm");
             break;
         }
     }

@@ -71,10 +71,8 @@ TEST(Patch, MustBeAnObjectNotTooDeepAndNotTooLong) {
     for (int i = 0; i < 33; ++i) deep = Json{{"a", std::move(deep)}};
     EXPECT_EQ(applyPatch(Json::object(), deep).error().code, ErrorCode::BadRequest);
     Json many = Json::object();
-    for (int i = 0; i < 256; ++i) many[std::string(120, 'n') + std::to_string(i)] = Json{{"color", {1, 1, 1}}};
-    const auto long_ = applyPatch(Json::object(), Json{{"lights", many}});
-    ASSERT_FALSE(long_.has_value());
-    EXPECT_EQ(long_.error().code, ErrorCode::TooLarge);
+    for (int i = 0; i < 4096; ++i) many[std::to_string(i)] = Json::object();
+    EXPECT_EQ(applyPatch(Json::object(), Json{{"lights", many}}).error().code, ErrorCode::TooLarge);
     many["one more"] = Json::object();
     EXPECT_EQ(applyPatch(Json::object(), Json{{"lights", many}}).error().field, "lights");
 }
