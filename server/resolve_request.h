@@ -15,8 +15,8 @@ struct View {
     protocol::StreamState stream;
 };
 
-// `scene` already has the document's lights and materials. Errors: a pass there is not, an encoding that cannot hold the
-// target's samples, a camera without a direction.
+// `scene` already has the document's lights and materials. Errors: a pass there is not, an encoding or samples
+// this server does not have, a camera without a direction.
 tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
                                                          std::shared_ptr<const scene::Scene> scene);
 
