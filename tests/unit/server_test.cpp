@@ -1,0 +1,244 @@
+// The parts of the server that decide without sockets, threads or a GPU.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "net/http.h"
+#include "scheduler.h"
+#include "session/outbox.h"
+#include "session/token_bucket.h"
+
+namespace caustream {
+namespace {
+
+using session::Outbox;
+using session::OutgoingFrame;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr std::uint64_t kStill = Scheduler::kStillAfterUs;
+
+Shown view(std::uint64_t changedUs, std::uint32_t rev = 1) {
+    auto view = std::make_shared<View>();
+    view->stream.maxFps = 100;
+    return {.view = std::move(view), .rev = rev, .changedUs = changedUs};
+}
+
+class SchedulerTest : public testing::Test {
+   protected:
+    // A session that streams, with room for two frames.
+    void streaming(SessionKey key, std::uint64_t nowUs) {
+        scheduler_.add(key);
+        scheduler_.show(key, view(nowUs));
+        scheduler_.setStreaming(key, true);
+        scheduler_.setOccupied(key, 0, 2, nowUs);
+    }
+    std::optional<FrameJob> next(std::uint64_t nowUs) { return scheduler_.next(nowUs, wakeUs_); }
+
+    Scheduler scheduler_;
+    std::uint64_t wakeUs_ = 0;
+};
+
+TEST_F(SchedulerTest, DrawsOncePerChangeThenOneStill) {
+    streaming(1, 1000);
+    const auto first = next(1000);
+    ASSERT_TRUE(first);
+    EXPECT_FALSE(first->still);
+    EXPECT_FALSE(next(1000)) << "nothing changed";
+    scheduler_.finished(*first);
+    scheduler_.setOccupied(1, 0, 2, 2000);
+    EXPECT_FALSE(next(2000));
+    EXPECT_EQ(wakeUs_, 2000 + kStill);
+    const auto still = next(2000 + kStill);
+    ASSERT_TRUE(still);
+    EXPECT_TRUE(still->still);
+    scheduler_.finished(*still);
+    EXPECT_FALSE(next(10 * kStill)) << "one still per pose";
+    EXPECT_EQ(wakeUs_, 0u) << "sleeps until something changes";
+}
+
+TEST_F(SchedulerTest, NewInputPutsTheStillOff) {
+    streaming(1, 1000);
+    scheduler_.finished(*next(1000));
+    scheduler_.show(1, view(1000 + kStill - 1));
+    const auto job = next(1000 + kStill);
+    ASSERT_TRUE(job);
+    EXPECT_FALSE(job->still);
+    EXPECT_FALSE(scheduler_.outdated(*job));
+    scheduler_.show(1, view(1000 + kStill + 1));
+    EXPECT_TRUE(scheduler_.outdated(*job));
+}
+
+TEST_F(SchedulerTest, NoRoomNoWork) {
+    streaming(1, 1000);
+    scheduler_.setOccupied(1, 2, 2, 1000);
+    EXPECT_FALSE(next(1000));
+    scheduler_.setOccupied(1, 1, 2, 1000);
+    EXPECT_TRUE(next(1000));
+    scheduler_.show(1, view(2000));
+    EXPECT_FALSE(next(900'000)) << "one on its way, one being drawn: the window is full";
+}
+
+TEST_F(SchedulerTest, SessionsTakeTurns) {
+    streaming(1, 1000);
+    streaming(2, 1000);
+    streaming(3, 1000);
+    std::vector<SessionKey> order;
+    for (std::uint64_t now = 100'000; order.size() < 6; now += 100'000) {
+        for (SessionKey key : {1, 2, 3}) {
+            scheduler_.show(key, view(now));
+        }
+        for (int i = 0; i < 3; ++i) {
+            const auto job = next(now);
+            ASSERT_TRUE(job);
+            order.push_back(job->session);
+            scheduler_.finished(*job);
+        }
+    }
+    EXPECT_THAT(order, ElementsAre(1, 2, 3, 1, 2, 3));
+}
+
+TEST_F(SchedulerTest, KeepsToTheFrameRate) {
+    streaming(1, 1000);
+    scheduler_.finished(*next(1000));
+    scheduler_.show(1, view(2000));
+    EXPECT_FALSE(next(2000));
+    EXPECT_EQ(wakeUs_, 11'000u) << "100 frames a second";
+    EXPECT_TRUE(next(11'000));
+}
+
+TEST_F(SchedulerTest, ARequestNeedsNoStreamAndShowsItsOwnMoment) {
+    scheduler_.add(1);
+    scheduler_.show(1, view(1000, 5));
+    EXPECT_TRUE(scheduler_.request(1, 9, true));
+    scheduler_.show(1, view(2000, 6));
+    const auto job = next(3000);
+    ASSERT_TRUE(job);
+    EXPECT_EQ(job->requestId, 9u);
+    EXPECT_EQ(job->shown.rev, 5u);
+    EXPECT_TRUE(job->still);
+    EXPECT_FALSE(next(3000));
+    for (std::size_t i = 0; i < Scheduler::kMaxRequests; ++i) {
+        EXPECT_TRUE(scheduler_.request(1, 1, false));
+    }
+    EXPECT_FALSE(scheduler_.request(1, 1, false)) << "patience has an end";
+}
+
+OutgoingFrame frame(std::uint32_t rev, std::uint32_t flags = 0) {
+    OutgoingFrame frame;
+    frame.buffer = stream::WireBuffer(protocol::kFrameHeaderBytes + 16);
+    frame.header.width = frame.header.height = frame.header.viewWidth = frame.header.viewHeight = 16;
+    frame.header.rawLen = 16 * 16 * 3;
+    frame.header.payloadLen = 16;
+    frame.header.encoding = protocol::Encoding::Jpeg;
+    frame.header.stateRev = rev;
+    frame.header.flags = flags;
+    frame.info.width = frame.info.height = 16;
+    return frame;
+}
+
+// The next message: a text's op, or "frame <seq> <rev>".
+std::string leave(Outbox& outbox, std::uint64_t nowUs = 1) {
+    auto message = outbox.next(nowUs);
+    if (!message) {
+        return "";
+    }
+    const auto bytes = message->buffer.bytes();
+    if (!message->binary) {
+        return protocol::Json::parse(bytes.begin(), bytes.end())["op"];
+    }
+    const auto header = protocol::decodeFrameHeader(bytes);
+    return header ? "frame " + std::to_string(header->frameSeq) + " " + std::to_string(header->stateRev) : header.error().message;
+}
+
+TEST(OutboxTest, TheEpochsDescriptionGoesFirstAndOnce) {
+    Outbox outbox;
+    outbox.text(R"({"op":"ok"})");
+    outbox.streamed(1, frame(1));
+    EXPECT_EQ(leave(outbox), "ok");
+    EXPECT_EQ(leave(outbox), "stream.info");
+    EXPECT_EQ(leave(outbox), "frame 1 1");
+    outbox.streamed(2, frame(2));
+    EXPECT_EQ(leave(outbox), "frame 2 2");
+    EXPECT_EQ(leave(outbox), "");
+}
+
+TEST(OutboxTest, TheWindowHoldsAndTheNewestWins) {
+    Outbox outbox;
+    outbox.setMaxInflight(8);
+    for (std::uint32_t rev = 1; rev <= 2; ++rev) {
+        outbox.streamed(rev, frame(rev));
+        while (outbox.occupied() > outbox.unacknowledged()) {
+            leave(outbox);
+        }
+    }
+    outbox.streamed(3, frame(3));
+    outbox.streamed(5, frame(5));
+    outbox.streamed(4, frame(4));
+    EXPECT_EQ(leave(outbox), "") << "two are out";
+    EXPECT_EQ(outbox.dropped(), 2u);
+    EXPECT_FALSE(outbox.acknowledge({.seq = 7}, 5)) << "never sent";
+    EXPECT_TRUE(outbox.acknowledge({.seq = 1}, 5));
+    EXPECT_EQ(leave(outbox), "frame 3 5");
+}
+
+TEST(OutboxTest, AnAnswerPassesTheWindowWithItsReply) {
+    Outbox outbox;
+    outbox.setMaxInflight(1);
+    outbox.streamed(1, frame(1));
+    leave(outbox);
+    EXPECT_EQ(leave(outbox), "frame 1 1");
+    OutgoingFrame answer = frame(2);
+    answer.requestId = 4;
+    outbox.requested(std::move(answer));
+    EXPECT_EQ(leave(outbox), "stats");
+    EXPECT_EQ(leave(outbox), "ok");
+    EXPECT_EQ(leave(outbox), "frame 2 2");
+    EXPECT_EQ(outbox.unacknowledged(), 1u);
+}
+
+TEST(OutboxTest, InputDiscardsAWaitingStill) {
+    Outbox outbox;
+    outbox.streamed(1, frame(1, protocol::kFrameStill));
+    outbox.discardStill();
+    EXPECT_EQ(leave(outbox), "");
+    outbox.streamed(2, frame(2));
+    outbox.discardStill();
+    EXPECT_EQ(leave(outbox), "stream.info");
+}
+
+TEST(TokenBucketTest, LetsABurstAndThenTheRateThrough) {
+    session::TokenBucket bucket(10);
+    int taken = 0;
+    for (int i = 0; i < 20; ++i) {
+        taken += bucket.take(1000);
+    }
+    EXPECT_EQ(taken, 10);
+    EXPECT_TRUE(bucket.take(1000 + 100'000));
+    EXPECT_FALSE(bucket.take(1000 + 100'001));
+}
+
+TEST(HttpTest, FilesByName) {
+    const embedded::File files[] = {{"index.html", "<p>"}, {"app.js", "1;"}};
+    EXPECT_EQ(net::pageFile(files, {"/", ""}).body, "<p>");
+    EXPECT_EQ(net::pageFile(files, {"/app.js", ""}).contentType, "text/javascript; charset=utf-8");
+    EXPECT_EQ(net::pageFile(files, {"/other", ""}).status, 404);
+    const std::string etag = net::pageFile(files, {"/app.js", ""}).etag;
+    EXPECT_EQ(net::pageFile(files, {"/app.js", etag}).status, 304);
+    EXPECT_NE(net::pageFile(files, {"/", ""}).etag, etag);
+}
+
+TEST(HttpTest, WhoMayTalk) {
+    EXPECT_TRUE(net::sameHost("", "127.0.0.1:9"));
+    EXPECT_TRUE(net::sameHost("http://127.0.0.1:9", "127.0.0.1:9"));
+    EXPECT_FALSE(net::sameHost("http://127.0.0.1:8", "127.0.0.1:9"));
+    EXPECT_FALSE(net::sameHost("null", "127.0.0.1:9"));
+    for (const char* host : {"localhost", "localhost:9", "127.0.0.1:9", "[::1]:9", "viewer.localhost"}) {
+        EXPECT_TRUE(net::isLocalName(host)) << host;
+    }
+    for (const char* host : {"", "evil.example", "127.0.0.1.evil.example:9", "localhost.evil.example", "[evil.example]"}) {
+        EXPECT_FALSE(net::isLocalName(host)) << host;
+    }
+}
+
+}  // namespace
+}  // namespace caustream
