@@ -33,6 +33,14 @@ glm::ivec2 gridSize(const View& view, int grid) {
     return {side(static_cast<float>(grid) * aspect), side(static_cast<float>(grid) / aspect)};
 }
 
+int levelsOf(const Transport& transport) { return transport.filter ? layout::kMostLevels : 1; }
+
+std::size_t pyramidTexels(int size, int levels) {
+    std::size_t texels = 0;
+    for (int level = 0; level < levels; ++level) texels += static_cast<std::size_t>(size >> level) * static_cast<std::size_t>(size >> level);
+    return texels;
+}
+
 // The light's flux per unit solid angle (or area) at texel `index` of the map, as the divisor of concentration.
 double texelExtent(const View& view, int size, int index) {
     const double hx = view.halfExtent.x, hy = view.halfExtent.y, area = 4.0 * hx * hy / (double(size) * size);
@@ -40,6 +48,30 @@ double texelExtent(const View& view, int size, int index) {
     const double x = ((index % size + 0.5) * 2.0 / size - 1.0) * hx, y = ((index / size + 0.5) * 2.0 / size - 1.0) * hy;
     const double r2 = 1.0 + x * x + y * y;
     return area / (r2 * std::sqrt(r2));
+}
+
+// The pyramid's levels added up at the finest, as map_resolve.comp does it: [texel][band], fixed-point units.
+std::vector<float> sumPyramid(const std::vector<GLuint>& map, int size, int levels, int bands) {
+    std::vector<float> above, own;
+    for (int level = levels - 1; level >= 0; --level) {
+        const int side = size >> level, coarse = side / 2;
+        const std::size_t first = pyramidTexels(size, level) * static_cast<std::size_t>(bands);
+        own.assign(map.begin() + static_cast<std::ptrdiff_t>(first),
+                   map.begin() + static_cast<std::ptrdiff_t>(first + pyramidTexels(side, 1) * static_cast<std::size_t>(bands)));
+        for (int y = 0; y < side && !above.empty(); ++y) {
+            for (int x = 0; x < side; ++x) {
+                // A fine texel's middle lies a quarter from its coarse texel's, towards the neighbour it shares with.
+                const int x0 = x / 2, y0 = y / 2;
+                const int x1 = std::clamp(x0 + (x % 2 ? 1 : -1), 0, coarse - 1), y1 = std::clamp(y0 + (y % 2 ? 1 : -1), 0, coarse - 1);
+                float* to = &own[static_cast<std::size_t>(y * side + x) * static_cast<std::size_t>(bands)];
+                const auto from = [&](int cx, int cy) { return &above[static_cast<std::size_t>(cy * coarse + cx) * static_cast<std::size_t>(bands)]; };
+                const float *a = from(x0, y0), *b = from(x1, y0), *c = from(x0, y1), *d = from(x1, y1);
+                for (int k = 0; k < bands; ++k) to[k] += (9.0f * a[k] + 3.0f * b[k] + 3.0f * c[k] + d[k]) / 64.0f;
+            }
+        }
+        above.swap(own);
+    }
+    return above;
 }
 
 optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in) {
@@ -122,6 +154,7 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
                           .outerView = out.outerView, .list = list_, .light = in.light, .cookie = cookie,
                           .wavelengths = std::move(wavelengths), .bands = bands ? static_cast<int>(count) : 0,
                           .fixedPerFlux = fixedPerFlux, .ledgerPerFlux = kFixedRange / totalFlux_,
+                          .levels = levelsOf(in.transport),
                           .backSteps = in.transport.backSteps, .receiverSteps = in.transport.receiverSteps,
                           .exitToleranceM = 0.1f * radius,
                           .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius)},
@@ -131,8 +164,8 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
 }
 
 void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
-    const int size = in.transport.mapSize;
-    const std::size_t texels = static_cast<std::size_t>(size) * size, outer = kOuterMapSize * kOuterMapSize;
+    const int size = in.transport.mapSize, levels = levelsOf(in.transport);
+    const std::size_t texels = pyramidTexels(size, levels), outer = kOuterMapSize * kOuterMapSize;
     map_.ensure(3 * (texels + outer) * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
     glClearNamedBufferData(map_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 
@@ -142,14 +175,14 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
     for (const Emitter& emitter : emitters) traceCaster(in, emitter, 0, out.wavelengths.nm.size(), fixedPerFlux, timer, out);
 
     timer.stage("map_resolve", [&] {
-        const auto resolve = [&](const View& view, int side, std::size_t first, gl::Texture& concentration) {
-            mapResolve_.run({.map = map_, .view = view, .size = side, .firstTexel = static_cast<int>(first),
+        const auto resolve = [&](const View& view, int side, int sideLevels, std::size_t first, gl::Texture& concentration) {
+            mapResolve_.run({.map = map_, .view = view, .size = side, .levels = sideLevels, .firstTexel = static_cast<int>(first),
                              .xyzToRgb = glm::mat3(out.wavelengths.xyzToRgb), .fluxPerFixed = 1.0 / fixedPerFlux,
                              .ledgerPerFixed = kFixedRange / totalFlux_ / fixedPerFlux},
                             concentration, ledger_);
         };
-        resolve(out.mapView, size, 0, out.map);
-        resolve(out.outerView, kOuterMapSize, texels, out.outerMap);
+        resolve(out.mapView, size, levels, 0, out.map);
+        resolve(out.outerView, kOuterMapSize, 1, texels, out.outerMap);
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                     GL_TEXTURE_UPDATE_BARRIER_BIT);   // map -> camera_receivers, gap_fill, read-back
@@ -157,31 +190,32 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
 }
 
 void LightSide::traceBands(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
-    const int size = in.transport.mapSize;
-    const std::size_t texels = static_cast<std::size_t>(size) * size, outer = kOuterMapSize * kOuterMapSize;
+    const int size = in.transport.mapSize, levels = levelsOf(in.transport);
+    const std::size_t finest = pyramidTexels(size, 1), texels = pyramidTexels(size, levels) + kOuterMapSize * kOuterMapSize;
     const std::size_t wavelengths = out.wavelengths.nm.size();
     GLint64 most = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(most) / ((texels + outer) * sizeof(GLuint)), 1, wavelengths);
+    const std::size_t batch = std::clamp<std::size_t>(static_cast<std::size_t>(most) / (texels * sizeof(GLuint)), 1, wavelengths);
     const double fixedPerFlux = kFixedRange / totalFlux_;
-    out.bands.assign(texels * wavelengths, 0.0f);
+    out.bands.assign(finest * wavelengths, 0.0f);
     out.mapHash = in.hash ? kFnvStart : 0;
-    double inMap = 0.0;
     batches_ = static_cast<int>((wavelengths + batch - 1) / batch);
+    double inMap = 0.0;
     for (std::size_t first = 0; first < wavelengths; first += batch) {
-        const std::size_t count = std::min(batch, wavelengths - first), words = (texels + outer) * count;
+        const std::size_t count = std::min(batch, wavelengths - first), words = texels * count;
         map_.ensure(words * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
         glClearNamedBufferData(map_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
         for (const Emitter& emitter : emitters) traceCaster(in, emitter, first, count, fixedPerFlux, timer, out);
         const std::vector<GLuint> map = readWords(map_, words);
         if (in.hash) out.mapHash = fnv1a(out.mapHash, map);
-        for (std::size_t texel = 0; texel < texels; ++texel) {
+        for (const GLuint word : map) inMap += word;
+        const std::vector<float> summed = sumPyramid(map, size, levels, static_cast<int>(count));
+        for (std::size_t texel = 0; texel < finest; ++texel) {
             const double scale = 1.0 / (fixedPerFlux * texelExtent(out.mapView, size, static_cast<int>(texel)));
             for (std::size_t band = 0; band < count; ++band) {
-                out.bands[texel * wavelengths + first + band] = static_cast<float>(map[texel * count + band] * scale);
+                out.bands[texel * wavelengths + first + band] = static_cast<float>(summed[texel * count + band] * scale);
             }
         }
-        for (const GLuint word : map) inMap += word;
     }
     out.ledger.deposited = inMap / (fixedPerFlux * static_cast<double>(wavelengths));
 }

@@ -265,7 +265,8 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
         impl_->shaders.program("photon_list", {{"COOKIE", cookie}});
         for (const int bands : {0, 1}) impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", cookie}});
     }
-    for (const char* stem : {"caster_layers", "receiver_depth", "map_resolve"}) impl_->shaders.program(stem);
+    for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
+    for (const int finest : {0, 1}) impl_->shaders.program("map_resolve", {{"FINEST", finest}});
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
     report(1);
     impl_->receivers.warmUp();

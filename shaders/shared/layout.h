@@ -10,6 +10,7 @@ namespace caustream::layout {
 LAYOUT_CONST kMostWavelengths = 64;
 LAYOUT_CONST kGroupSize = 64;          // threads of a one-dimensional compute group
 LAYOUT_CONST kScanTexels = 16;         // texels one thread of photon_list looks at
+LAYOUT_CONST kMostLevels = 5;          // of the map's pyramid: a photon may be spread over 16 texels
 LAYOUT_CONST kListHeader = 4;          // uints before a photon list's texels: the dispatch size (3), the photon count
 
 // Shader storage bindings

@@ -1,24 +1,38 @@
 #include "render/passes/map_resolve.h"
 
-#include "shaders/shared/layout.h"
-
 namespace caustream::render {
 
+MapResolve::MapResolve(gl::ShaderLibrary& shaders)
+    : shaders_(shaders), linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "map resolve")) {}
+
 void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger) {
-    concentration.ensure(in.size, in.size, GL_RGBA32F, "spectral map");
-    const GLuint program = shaders_.program("map_resolve");
-    glUseProgram(program);
-    const gl::Uniforms uniforms(program);
-    setView(uniforms, "u_view", in.view);
-    uniforms.set("u_firstTexel", in.firstTexel)
-        .set("u_xyzToRgb", in.xyzToRgb)
-        .set("u_fluxPerFixed", static_cast<float>(in.fluxPerFixed))
-        .set("u_luminance", static_cast<float>(in.ledgerPerFixed));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindMap, in.map.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, ledger.get());
-    glBindImageTexture(0, concentration.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    const int perGroup = layout::kGroupSize * layout::kScanTexels;
-    glDispatchCompute(static_cast<GLuint>((in.size * in.size + perGroup - 1) / perGroup), 1, 1);
+    glBindSampler(0, linear_.get());
+    for (int level = in.levels - 1; level >= 0; --level) {
+        const int size = in.size >> level;
+        int first = in.firstTexel;
+        for (int i = 0; i < level; ++i) first += (in.size >> i) * (in.size >> i);
+        gl::Texture& out = level == 0 ? concentration : coarse_[static_cast<std::size_t>(level)];
+        out.ensure(size, size, GL_RGBA32F, "spectral map");
+
+        const GLuint program = shaders_.program("map_resolve", {{"FINEST", level == 0 ? 1 : 0}});
+        glUseProgram(program);
+        const gl::Uniforms uniforms(program);
+        setView(uniforms, "u_view", in.view);
+        uniforms.set("u_firstTexel", first)
+            .set("u_xyzToRgb", in.xyzToRgb)
+            .set("u_fluxPerFixed", static_cast<float>(in.fluxPerFixed))
+            .set("u_luminance", static_cast<float>(in.ledgerPerFixed))
+            .set("u_hasAbove", level + 1 < in.levels)
+            .set("u_above", 0);
+        if (level + 1 < in.levels) glBindTextureUnit(0, coarse_[static_cast<std::size_t>(level) + 1].get());
+        glBindImageTexture(0, out.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+        const int perGroup = layout::kGroupSize * layout::kScanTexels;
+        glDispatchCompute(static_cast<GLuint>((size * size + perGroup - 1) / perGroup), 1, 1);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);   // this level -> the next finer
+    }
+    glBindSampler(0, 0);
 }
 
 }  // namespace caustream::render

@@ -1,10 +1,12 @@
-// Fixed-point map -> concentration in linear BT.709, smoothed only where photons are sparse.
+// Fixed-point map -> concentration in linear BT.709: sums the pyramid that the photons were deposited in.
 #pragma once
+#include <array>
 #include <glm/mat3x3.hpp>
 
 #include "gl/names.h"
 #include "gl/shader_library.h"
 #include "render/view.h"
+#include "shaders/shared/layout.h"
 
 namespace caustream::render {
 
@@ -13,18 +15,21 @@ class MapResolve {
     struct Inputs {
         const gl::Buffer& map;            // photon_trace, XYZ
         const View& view;
-        int size;                         // texels a side
-        int firstTexel;                   // of this map in the buffer
+        int size;                         // texels a side of the finest level
+        int levels;                       // of the pyramid, 1..kMostLevels, each half as many texels a side
+        int firstTexel;                   // of the finest level in the buffer; the others follow
         glm::mat3 xyzToRgb;
         double fluxPerFixed, ledgerPerFixed;
     };
 
-    explicit MapResolve(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
+    explicit MapResolve(gl::ShaderLibrary& shaders);
     // Fills `concentration` (RGBA32F; rgb 1 = as bright as direct light) and books the deposited flux in `ledger`.
     void run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger);
 
    private:
     gl::ShaderLibrary& shaders_;
+    gl::Sampler linear_;
+    std::array<gl::Texture, layout::kMostLevels> coarse_;   // RGBA32F XYZ, by level; the finest goes to the caller
 };
 
 }  // namespace caustream::render

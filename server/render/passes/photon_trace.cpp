@@ -30,6 +30,7 @@ void PhotonTrace::run(const Inputs& in, const Outputs& out) {
         .set("u_xyz", xyz)
         .set("u_fixedPerFlux", static_cast<float>(in.fixedPerFlux))
         .set("u_ledgerPerFlux", static_cast<float>(in.ledgerPerFlux))
+        .set("u_levels", in.levels)
         .set("u_backSteps", in.backSteps)
         .set("u_receiverSteps", in.receiverSteps)
         .set("u_exitTolerance", in.exitToleranceM)

@@ -30,11 +30,12 @@ class PhotonTrace {
         std::vector<TracedWavelength> wavelengths;           // <= kMostWavelengths
         int bands = 0;                                       // 0: XYZ; else one band per wavelength, of this many
         double fixedPerFlux = 1.0, ledgerPerFlux = 1.0;
+        int levels = 1;                                      // of the inner map's pyramid
         int backSteps = 4, receiverSteps = 6;
         float exitToleranceM = 1e-3f, reachM = 100.0f;
     };
     struct Outputs {
-        const gl::Buffer& map;        // u32, texel-major: inner map's texels, then the outer's; 3 (XYZ) or `bands` each
+        const gl::Buffer& map;        // u32, texel-major: levels of the inner map, then the outer's; 3 (XYZ) or `bands` each
         const gl::Buffer& ledger;     // kLedgerBanks x kLedgerRows u32
     };
 
