@@ -26,8 +26,14 @@ void transform(Mesh& mesh, const glm::mat4& matrix);
 // Unit icosahedron subdivided `levels` times: 20 * 4^levels faces. Vertices on the sphere, smooth normals.
 Mesh icosphere(int levels, const glm::dvec3& centre, double radius);
 
-// `around` x `across` quads; `axis` y. Smooth normals.
+// Around the y axis, `around` x `across` quads. Smooth normals.
 Mesh torus(double majorRadius, double minorRadius, int around, int across);
+
+// (radius, height) points of a smooth curve.
+using Profile = std::vector<glm::dvec2>;
+// Turns curves around the y axis, `around` steps: normals are smooth along each curve, with an edge where one ends and the
+// next begins. From the axis at the bottom, outside, to the axis at the top: closed and outside out.
+Mesh lathe(const std::vector<Profile>& curves, int around);
 
 // Corners counter-clockwise seen from the side the normal points to; uv 0..1 with v down.
 Mesh quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);

@@ -92,6 +92,35 @@ Mesh torus(double majorRadius, double minorRadius, int around, int across) {
     return mesh;
 }
 
+Mesh lathe(const std::vector<Profile>& curves, int around) {
+    Mesh mesh;
+    for (const Profile& curve : curves) {
+        const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+        const auto count = static_cast<std::uint32_t>(curve.size());
+        for (int i = 0; i < around; ++i) {
+            const double u = 2.0 * std::numbers::pi * i / around;
+            const glm::dvec3 out(std::cos(u), 0.0, -std::sin(u));
+            for (std::size_t j = 0; j < curve.size(); ++j) {
+                const glm::dvec2 along = curve[std::min(j + 1, curve.size() - 1)] - curve[j > 0 ? j - 1 : 0];
+                const glm::dvec2 normal = glm::normalize(glm::dvec2(along.y, -along.x));
+                mesh.positions.push_back(glm::vec3(curve[j].x * out + glm::dvec3(0.0, curve[j].y, 0.0)));
+                // On the axis the two sides' normals meet: straight up or down.
+                const glm::dvec3 turned = normal.x * out + glm::dvec3(0.0, normal.y, 0.0);
+                mesh.normals.push_back(curve[j].x == 0.0 ? glm::vec3(0.0f, normal.y < 0.0 ? -1.0f : 1.0f, 0.0f)
+                                                         : glm::vec3(turned));
+            }
+        }
+        for (int i = 0; i < around; ++i)
+            for (std::uint32_t j = 0; j + 1 < count; ++j) {
+                const std::uint32_t a = base + static_cast<std::uint32_t>(i) * count + j;
+                const std::uint32_t b = base + static_cast<std::uint32_t>((i + 1) % around) * count + j;
+                if (curve[j].x > 0.0) mesh.indices.insert(mesh.indices.end(), {a, b, b + 1});
+                if (curve[j + 1].x > 0.0) mesh.indices.insert(mesh.indices.end(), {a, b + 1, a + 1});
+            }
+    }
+    return mesh;
+}
+
 Mesh quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
     const glm::vec3 normal = glm::normalize(glm::cross(b - a, d - a));
     return {{a, b, c, d}, {normal, normal, normal, normal}, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, {0, 1, 2, 0, 2, 3}};

@@ -73,7 +73,7 @@ TEST(BuiltinScenes, UnknownNamesListTheKnown) {
 }
 
 TEST(BuiltinScenes, AreTheThesiss) {
-    const std::map<std::string, std::uint32_t> faces{{"sphere", 5120}};
+    const std::map<std::string, std::uint32_t> faces{{"sphere", 5120}, {"ring", 65'536}};
     for (const auto& [name, count] : faces) {
         const auto scene = loadBuiltin(name);
         ASSERT_TRUE(scene) << scene.error().message;
@@ -82,7 +82,7 @@ TEST(BuiltinScenes, AreTheThesiss) {
             if (scene->materials[object.material].caster) glass += object.indexCount / 3;
         EXPECT_EQ(glass, count) << name;
     }
-    for (const char* name : {"gem"}) EXPECT_TRUE(loadBuiltin(name)) << name;
+    for (const char* name : {"gem", "glass", "prism"}) EXPECT_TRUE(loadBuiltin(name)) << name;
 }
 
 }  // namespace
