@@ -1,13 +1,16 @@
 // The projected spectral map: light that casters bring to a point, 1 = as bright as direct light.
-#include "common/shadow.glsl"
+#include "common/view.glsl"
 
-// Inner map, the coarse outer one around it, and a cross-fade of a few texels where they meet.
-vec3 concentration(sampler2D inner, sampler2D outer, View innerView, View outerView, vec3 posInner, vec3 posOuter) {
-    vec2 uv = viewToUv(innerView, posInner), uvOuter = viewToUv(outerView, posOuter);
-    vec2 toBorder = (0.5 - abs(uv - 0.5)) * vec2(textureSize(inner, 0));
-    float inside = clamp(min(toBorder.x, toBorder.y) / 4.0, 0.0, 1.0);
-    bool inOuter = all(lessThan(abs(uvOuter - 0.5), vec2(0.5)));
-    vec3 sum = (inOuter ? (1.0 - inside) * texture(outer, uvOuter).rgb : vec3(0.0)) + inside * texture(inner, uv).rgb;
-    bool ahead = !innerView.perspective || posInner.z < 0.0;
-    return ahead ? max(sum, vec3(0.0)) : vec3(0.0);
+// Sum of the inner map and the coarse outer one, which holds only what landed outside the inner. `outerScale`: inner over
+// outer half extent. A map's alpha is the layer value of the receiver that its light lies on (1: unknown); what hides
+// behind that receiver gets nothing.
+vec3 concentration(sampler2D inner, sampler2D outer, View view, vec2 outerScale, vec3 pos) {
+    vec2 offset = viewToUv(view, pos) - 0.5, outerOffset = offset * outerScale;
+    vec4 fine = texture(inner, 0.5 + offset), coarse = texture(outer, 0.5 + outerOffset);
+    bool inInner = all(lessThan(abs(offset), vec2(0.5)));
+    bool inOuter = all(lessThan(abs(outerOffset), vec2(0.5))) && (!view.perspective || pos.z < 0.0);
+    vec3 sum = max(coarse.rgb + (inInner ? fine.rgb : vec3(0.0)), vec3(0.0));
+    float layer = inInner ? fine.a : coarse.a;
+    float hidden = layer < 1.0 ? behindLayer(view, pos, layer) : 0.0;
+    return inOuter ? sum * clamp(3.0 - 100.0 * hidden, 0.0, 1.0) : vec3(0.0);  // fades from 2% to 3% behind
 }

@@ -16,15 +16,10 @@ float raisedLayer(View view, vec3 pos, vec3 normal, vec2 texelSize, float texels
     return layer + rounding + min(slope, abs(layer) + rounding);
 }
 
-// 1 lit, 0 in shadow; outside the view everything is lit. Four filtered taps: an edge about two texels wide.
+// 1 lit, 0 in shadow; outside the view everything is lit. One filtered tap: shadow texels are finer than pixels.
 float visibility(sampler2DShadow depths, View view, vec3 pos, vec3 normal) {
-    vec2 texel = 1.0 / vec2(textureSize(depths, 0));
     vec2 uv = viewToUv(view, pos);
-    float layer = raisedLayer(view, pos, normal, texel, 1.75);
-    vec4 covered = vec4(texture(depths, vec3(uv + texel * vec2(-0.25, -0.75), layer)),
-                        texture(depths, vec3(uv + texel * vec2(0.75, -0.25), layer)),
-                        texture(depths, vec3(uv + texel * vec2(0.25, 0.75), layer)),
-                        texture(depths, vec3(uv + texel * vec2(-0.75, 0.25), layer)));
+    float layer = raisedLayer(view, pos, normal, 1.0 / vec2(textureSize(depths, 0)), 1.0);
     bool inside = all(lessThan(abs(uv - 0.5), vec2(0.5))) && (!view.perspective || pos.z < 0.0);
-    return inside ? 1.0 - dot(covered, vec4(0.25)) : 1.0;
+    return inside ? 1.0 - texture(depths, vec3(uv, layer)) : 1.0;
 }

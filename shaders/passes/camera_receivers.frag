@@ -5,9 +5,7 @@
 #include "common/shadow.glsl"
 #include "common/concentration.glsl"
 in vec3 v_world, v_normal;
-uniform vec3 u_towardsEye;          // orthographic cameras: unit, world
-uniform vec3 u_eye;                 // perspective cameras: world
-uniform bool u_cameraPerspective;
+uniform vec4 u_eye;                 // world; w 0: an orthographic camera's direction instead, towards the eye
 uniform Light u_lights[8];          // [0] throws the shadow and the map
 uniform vec3 u_baseColor, u_emissive, u_environment;
 #if TEXTURE
@@ -20,8 +18,9 @@ uniform View u_shadowView;
 uniform sampler2DShadow u_shadowDepth;
 #endif
 #if MAP
-in vec3 v_map, v_outer;
-uniform View u_mapView, u_outerView;
+in vec3 v_map;
+uniform View u_mapView;
+uniform vec2 u_outerScale;
 uniform sampler2D u_map, u_outerMap;
 #endif
 #if FULL
@@ -35,13 +34,9 @@ uniform sampler2D u_cookie;
 layout(location = 0) out vec4 o_radiance;
 
 void main() {
-    // The face's own normal, on the viewer's side; the interpolated one follows it.
-    vec3 toEye = u_cameraPerspective ? normalize(u_eye - v_world) : u_towardsEye;
-    vec3 face = cross(dFdx(v_world), dFdy(v_world));
-    face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
-    vec3 normal = v_normal * (dot(v_normal, face) < 0.0 ? -1.0 : 1.0);
-    float length2 = dot(normal, normal);
-    normal = length2 > 1e-12 ? normal * inversesqrt(length2) : normalize(face + 1e-30 * toEye);
+    // Receivers have two sides: the normal is that of the one that is seen.
+    vec3 normal = gl_FrontFacing ? v_normal : -v_normal;
+    normal *= inversesqrt(max(dot(normal, normal), 1e-20));
 
     vec3 base = u_baseColor;
 #if TEXTURE
@@ -62,13 +57,13 @@ void main() {
     if (u_hasCookie) share *= cookie;
 #endif
 #if MAP
-    share += concentration(u_map, u_outerMap, u_mapView, u_outerView, v_map, v_outer);
+    share += concentration(u_map, u_outerMap, u_mapView, u_outerScale, v_map);
 #endif
     vec3 key = u_lights[0].rgb * toKey.w * share;  // irradiance across the light's direction
     vec3 irradiance = key * cosKey;
     vec3 diffuse = base, radiance = u_emissive;
 #if FULL
-    vec3 F0 = mix(vec3(0.04), base, u_metallic);
+    vec3 F0 = mix(vec3(0.04), base, u_metallic), toEye = normalize(u_eye.xyz - u_eye.w * v_world);
     diffuse *= 1.0 - u_metallic;
     radiance += u_gloss * key * highlight(normal, toEye, toKey.xyz, u_roughness, F0);
     radiance += u_environment * F0 * u_metallic;

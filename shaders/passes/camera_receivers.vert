@@ -3,7 +3,7 @@ layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec2 a_uv;
 uniform mat4 u_worldToClip;
-uniform View u_shadowView, u_mapView, u_outerView;
+uniform View u_shadowView, u_mapView;
 out vec3 v_world, v_normal;
 #if TEXTURE
 out vec2 v_uv;
@@ -12,7 +12,7 @@ out vec2 v_uv;
 out vec3 v_shadow;
 #endif
 #if MAP
-out vec3 v_map, v_outer;
+out vec3 v_map;
 #endif
 
 void main() {
@@ -27,7 +27,6 @@ void main() {
 #endif
 #if MAP
     v_map = (u_mapView.worldToView * world).xyz;
-    v_outer = (u_outerView.worldToView * world).xyz;
 #endif
     gl_Position = u_worldToClip * world;
 }

@@ -33,6 +33,21 @@ class CameraReceiversTest : public CameraPass {
         lighting.shadowDepth = shadow_.get();
     }
 
+    static gl::Texture constantMap(const glm::vec4& value) {
+        gl::Texture map(16, 16, GL_RGBA32F, "map");
+        fillTexture(map, std::vector<glm::vec4>(256, value));
+        return map;
+    }
+
+    // From the light above the floor of most tests.
+    static void project(const gl::Texture& map, const gl::Texture& outer, Lighting& lighting) {
+        lighting.hasMap = true;
+        lighting.map = map.get();
+        lighting.outerMap = outer.get();
+        lighting.mapView = lookingAt({0, 2, 0}, {0, 0, 0}, 150.0f);
+        lighting.outerView = lookingAt({0, 2, 0}, {0, 0, 0}, 170.0f);
+    }
+
     // Where the view's ray through the centre of a pixel meets the plane y = 0.
     static glm::vec3 onFloor(const View& view, int x, int y) {
         const glm::vec2 xy = (2.0f * (glm::vec2(x, y) + 0.5f) / float(kSize) - 1.0f) * view.halfExtent;
@@ -88,17 +103,26 @@ TEST_F(CameraReceiversTest, ConcentrationOfOneDoublesTheLight) {
     const SyntheticScene scene = floor(matte(glm::vec3(0.5f)));
     const auto once = shade(scene, lighting, above_);
 
-    const gl::Texture map(16, 16, GL_RGBA16F, "map");
-    fillTexture(map, std::vector<glm::vec4>(256, glm::vec4(1.0f)));
-    lighting.hasMap = true;
-    lighting.map = lighting.outerMap = map.get();
-    lighting.mapView = lookingAt({0, 2, 0}, {0, 0, 0.001f}, 30.0f);
-    lighting.outerView = lookingAt({0, 2, 0}, {0, 0, 0.001f}, 170.0f);
+    const gl::Texture map = constantMap(glm::vec4(1.0f)), outer = constantMap(glm::vec4(0, 0, 0, 1));
+    project(map, outer, lighting);
     const auto twice = shade(scene, lighting, above_);
     for (std::size_t i = 0; i < once.size(); ++i) {
         const glm::vec3 at = onFloor(above_, int(i) % kSize, int(i) / kSize);
         if (glm::length(glm::vec2(at.x, at.z)) > 3.0f) continue;  // near the cone's edge or beyond it
         EXPECT_NEAR(twice[i].g, 2.0f * once[i].g, 3e-3f * once[i].g) << i;
+    }
+}
+
+TEST_F(CameraReceiversTest, WhatHidesBehindTheMapsReceiverGetsNoneOfItsLight) {
+    Lighting lighting = litBy(spotAt({0, 2, 0}, {0, -1, 0}, 100.0f));
+    const SyntheticScene scene = floor(matte(glm::vec3(0.5f)));
+    const auto once = shade(scene, lighting, above_);
+    const std::size_t centre = kSize * kSize / 2 + kSize / 2;
+    const gl::Texture outer = constantMap(glm::vec4(0, 0, 0, 1));
+    for (const float depth : {1.0f, 2.0f, 3.0f}) {  // of the receiver that the light lies on; the floor is 2 m away
+        const gl::Texture map = constantMap(glm::vec4(1, 1, 1, lighting.mapView.nearM / depth));
+        project(map, outer, lighting);
+        EXPECT_NEAR(shade(scene, lighting, above_)[centre].g, (depth < 2.0f ? 1.0f : 2.0f) * once[centre].g, 0.01f);
     }
 }
 

@@ -45,13 +45,11 @@ void CameraReceivers::setFrame(const Inputs& in, GLuint program) const {
     const gl::Uniforms uniforms(program);
     const float perUnit = 1.0f / radianceUnit(lighting);
     uniforms.set("u_worldToClip", in.view.worldToClip())
-        .set("u_eye", in.view.position())
-        .set("u_towardsEye", -in.view.forward())
-        .set("u_cameraPerspective", in.view.perspective)
+        .set("u_eye", in.view.perspective ? glm::vec4(in.view.position(), 1.0f) : glm::vec4(-in.view.forward(), 0.0f))
         .set("u_environment", lighting.environmentRadiance * perUnit);
     setView(uniforms, "u_shadowView", lighting.shadowView);
     setView(uniforms, "u_mapView", lighting.mapView);
-    setView(uniforms, "u_outerView", lighting.outerView);
+    uniforms.set("u_outerScale", lighting.mapView.halfExtent / lighting.outerView.halfExtent);
     uniforms.set("u_shadowDepth", kShadow).set("u_map", kMap).set("u_outerMap", kOuterMap).set("u_cookie", kCookie);
     uniforms.set("u_baseColorTexture", kBaseColor);
 
