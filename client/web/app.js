@@ -130,12 +130,12 @@ new ResizeObserver(() => {
 // ---- gestures ----
 
 const moveCamera = (move) => session.shown.camera?.eye && session.pose({ camera: poseOf(move(session.shown.camera)) });
-const poseOf = ({ eye, target }) => ({ eye, target });
+const poseOf = ({ eye, target, up }) => ({ eye, target, up });
 
 function moveLight(dx, dy) {
     const light = panel.light();
     if (!light || !session.shown.camera?.eye) return;
-    const pose = dragLight(light, session.shown.camera, session.pivot(panel.lightName), dx, dy);
+    const pose = dragLight(light, session.shown.camera, session.lightPath(panel.lightName), dx, dy);
     session.pose({ lights: { [panel.lightName]: pose } });
 }
 

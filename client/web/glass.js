@@ -1,6 +1,6 @@
 // Dispersion as the panel's sliders show it: Cauchy's n = A + B / l^2, l in um.
 
-const kMaxIndex = 5, kShortestUm = 0.38;   // what the server takes, over the band it renders (protocol/README.md)
+const kMaxIndex = 6, kShortestUm = 0.38;   // what the server takes, over the band it renders (protocol/README.md)
 const kMaxB = 1;
 
 // Real glass has B near 0.005, the thesis's exaggerated one 0.6: the cube gives both room on one slider.

@@ -1,6 +1,5 @@
 // The settings: each control shows a value of the state document and changes it by a patch.
 import { asCauchy, bToSlider, cauchyWithin, sliderToB } from './glass.js';
-import { aimedFrom } from './poses.js';
 
 const byId = (id) => document.getElementById(id);
 const kGrids = [0, 128, 256, 512, 1024, 2048], kMapSizes = [256, 512, 1024, 2048];
@@ -69,7 +68,7 @@ export class Panel {
         const light = this.light();
         if (!light?.position) return;
         const position = light.position.map((old, i) => (i === axis ? value : old));
-        this.session_.pose({ lights: { [this.lightName]: aimedFrom(light, position, this.session_.pivot(this.lightName)) } });
+        this.session_.placeLight(this.lightName, position);
     }
 
     disperse_(dispersion) {
@@ -145,7 +144,7 @@ export class Panel {
         fill(byId('light'), names.map((name) => [name, name]), this.lightName);
         byId('light-row').hidden = names.length < 2;
         const light = this.light();
-        const range = this.session_.lightRange(this.lightName);
+        const range = light?.position && this.session_.lightRange(this.lightName);
         ['x', 'y', 'z'].forEach((axis, i) => {
             const slider = byId(`light-${axis}`);
             slider.disabled = !light?.position || light.type === 'directional';

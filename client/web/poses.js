@@ -5,6 +5,9 @@ import { add, cross, dot, length, normalize, rotate, scale, subtract } from './v
 const kRadiansPerHeight = 3.0;    // a drag over the whole picture turns the camera by about half a turn
 const kLightPerHeight = 1.8;      // the light is dragged with more care
 const kPoleMarginCos = 0.995;     // how near to straight up or down the camera may look
+const kLevelSin = 0.02;           // a camera rolled by less is level
+const kBoxShare = 0.97;           // a light stops this far short of the walls around it
+const kUp = [0, 1, 0];            // glTF's
 
 // Right, up and forward of the camera, unit.
 export function cameraAxes(camera) {
@@ -13,14 +16,15 @@ export function cameraAxes(camera) {
     return { right, up: cross(right, forward), forward };
 }
 
+// A level camera stays level: files often give the camera's own up, which leans back when it looks down.
 export function orbit(camera, dx, dy) {
-    const worldUp = normalize(camera.up);
     const { right } = cameraAxes(camera);
+    const worldUp = Math.abs(dot(right, kUp)) < kLevelSin && dot(camera.up, kUp) > 0 ? kUp : normalize(camera.up);
     const offset = subtract(camera.eye, camera.target);
     let turned = rotate(offset, right, -dy * kRadiansPerHeight);
     if (Math.abs(dot(normalize(turned), worldUp)) > kPoleMarginCos) turned = offset;
     turned = rotate(turned, worldUp, -dx * kRadiansPerHeight);
-    return { ...camera, eye: add(camera.target, turned) };
+    return { ...camera, eye: add(camera.target, turned), up: worldUp };
 }
 
 // What lies at the target's depth follows the pointer.
@@ -46,19 +50,25 @@ export function lightPivot(light, centre) {
     return along > 1e-3 ? add(light.position, scale(axis, along)) : centre;
 }
 
-// Pushes the light along the screen and back onto its sphere around the pivot: it keeps its distance and stays aimed. A
-// directional light has no place, so only its direction turns.
-export function dragLight(light, camera, pivot, dx, dy) {
+// How far one can go from `from` (inside the box) along the unit vector `direction` before a wall.
+function reach(from, direction, box) {
+    const steps = direction.map((d, i) => (d === 0 ? Infinity : ((d > 0 ? box.max : box.min)[i] - from[i]) / d));
+    return kBoxShare * Math.min(...steps);
+}
+
+// Pushes the light along the screen and back onto its sphere: it keeps its distance and stays aimed. path: {pivot, distance,
+// box}; walls nearer than the distance (a light in a room: box is not null) bring it closer. A directional light has no
+// place, so only its direction turns.
+export function dragLight(light, camera, path, dx, dy) {
     const { right, up } = cameraAxes(camera);
     const push = add(scale(right, dx * kLightPerHeight), scale(up, -dy * kLightPerHeight));
     if (light.type === 'directional') {
         const from = normalize(add(scale(normalize(light.direction), -1), push));
         return { direction: scale(from, -1) };
     }
-    const offset = subtract(light.position, pivot);
-    const distance = length(offset);
-    const from = normalize(add(normalize(offset), push));
-    return aimedFrom(light, add(pivot, scale(from, distance)), pivot);
+    const from = normalize(add(normalize(subtract(light.position, path.pivot)), push));
+    const distance = path.box ? Math.min(path.distance, reach(path.pivot, from, path.box)) : path.distance;
+    return aimedFrom(light, add(path.pivot, scale(from, distance)), path.pivot);
 }
 
 // The pose of the light at `position`, aimed at the pivot where it has an axis.

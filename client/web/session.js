@@ -1,7 +1,7 @@
 // This page's copy of the state document. What the user changes is shown at once, sent, and kept, so that any server can
 // be told all of it after a reconnection.
 
-import { lightPivot } from './poses.js';
+import { aimedFrom, lightPivot } from './poses.js';
 import { add, length, scale, subtract } from './vector.js';
 
 const kInputEveryMs = 15;    // a fast display must not use up the server's message limit
@@ -52,8 +52,8 @@ export class Session {
         const sceneKey = JSON.stringify(state.scene);
         this.scene = scene;
         if (this.home?.sceneKey !== sceneKey) {
-            const pivots = Object.entries(state.lights ?? {}).map(([name, light]) => [name, lightPivot(light, this.centre_())]);
-            this.home = { sceneKey, camera: state.camera, lights: state.lights, pivots: Object.fromEntries(pivots) };
+            const paths = Object.entries(state.lights ?? {}).map(([name, light]) => [name, this.pathOf_(light)]);
+            this.home = { sceneKey, camera: state.camera, lights: state.lights, paths: Object.fromEntries(paths) };
         }
         this.resolved_ = overlay(state, this.pose_ ?? {});
         // A drag may have outlived its scene: a name that is gone would make the server refuse the whole replay.
@@ -65,30 +65,42 @@ export class Session {
         this.changed_();
     }
 
-    // Of what the light is for: the glass, or all there is.
-    centre_() {
-        const box = this.scene?.caster_bounds ?? this.scene?.bounds;
-        return box ? scale(add(box.min, box.max), 0.5) : [0, 0, 0];
+    // What a dragged light moves on: a sphere around what it is aimed at, inside the room if the file put it in one. It is
+    // found once per scene: found anew after every move it would drift.
+    pathOf_(light) {
+        const bounds = this.scene.bounds ?? { min: [-1, -1, -1], max: [1, 1, 1] };
+        const aim = this.scene.caster_bounds ?? bounds;
+        const pivot = lightPivot(light, scale(add(aim.min, aim.max), 0.5));
+        const inside = (point) => point.every((c, i) => c > bounds.min[i] && c < bounds.max[i]);
+        const box = inside(light.position) && inside(pivot) ? bounds : null;
+        return { pivot, distance: Math.max(length(subtract(light.position, pivot)), 0.01), box };
     }
 
-    // The point a light is turned around. It is found once per scene: found anew after every move it would drift.
-    pivot(lightName) {
-        return this.home?.pivots[lightName] ?? this.centre_();
+    lightPath(lightName) {
+        return this.home?.paths[lightName];
     }
 
     // The box that a light's position sliders span.
     lightRange(lightName) {
-        const pivot = this.pivot(lightName);
-        const home = this.home?.lights?.[lightName]?.position ?? add(pivot, [1, 1, 1]);
-        const reach = 1.5 * Math.max(length(subtract(home, pivot)), 0.1);
-        return { min: pivot.map((c) => c - reach), max: pivot.map((c) => c + reach) };
+        const { pivot, distance, box } = this.lightPath(lightName);
+        return box ?? { min: pivot.map((c) => c - 1.5 * distance), max: pivot.map((c) => c + 1.5 * distance) };
+    }
+
+    // Puts a light somewhere by hand: it stays aimed, and drags keep the new distance.
+    placeLight(lightName, position) {
+        const path = this.lightPath(lightName);
+        path.distance = Math.max(length(subtract(position, path.pivot)), 0.01);
+        this.pose({ lights: { [lightName]: aimedFrom(this.shown.lights[lightName], position, path.pivot) } });
     }
 
     // Camera and lights as the scene's file has them.
     goHome() {
         if (!this.home) return;
         const { eye, target, up, fov_y_deg } = this.home.camera;
-        const lights = Object.entries(this.home.lights ?? {}).map(([name, { position, direction }]) => [name, { position, direction }]);
+        const lights = Object.entries(this.home.lights ?? {}).map(([name, light]) => {
+            Object.assign(this.home.paths[name], this.pathOf_(light));
+            return [name, { position: light.position, direction: light.direction }];
+        });
         this.pose({ camera: { eye, target, up, fov_y_deg }, lights: Object.fromEntries(lights) });
     }
 
