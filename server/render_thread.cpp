@@ -14,6 +14,7 @@
 namespace caustream {
 namespace {
 
+constexpr std::chrono::milliseconds kShaderPoll{100};  // only with --shader-dir, for who writes shaders
 constexpr int kEncoderThreads = 2;  // one still as PNG must not hold up another viewer's stream
 
 std::string hashText(std::uint64_t hash) {
@@ -26,7 +27,7 @@ session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& f
     session::OutgoingFrame outgoing;
     outgoing.header = frameHeader(*job.shown.view, frame);
     protocol::FrameHeader& header = outgoing.header;
-    header.flags = job.still ? protocol::kFrameStill : 0u;
+    header.flags = job.still || job.requestId ? protocol::kFrameStill : 0u;
     header.inputSeq = job.shown.inputSeq;
     header.stateRev = job.shown.rev;
     header.clientUs = job.shown.clientUs;
@@ -110,6 +111,9 @@ void RenderThread::serve(Gpu& gpu) {
             lock.unlock();
             gpu.pipeline.collect();
             lock.lock();
+        } else if (!config_.shaderDir.empty()) {
+            wake_.wait_for(lock, kShaderPoll);
+            reloadShaders(gpu);
         } else if (wakeUs != 0) {
             wake_.wait_for(lock, std::chrono::microseconds(wakeUs - now));
         } else {
@@ -118,16 +122,21 @@ void RenderThread::serve(Gpu& gpu) {
     }
 }
 
+void RenderThread::reloadShaders(Gpu& gpu) {
+    if (gpu.shaders.reloadIfChanged()) {
+        log::info("shaders").with("message", "read again");
+        scheduler_.redrawAll();
+    }
+}
+
 void RenderThread::draw(Gpu& gpu, FrameJob job) {
     busySinceUs_ = job.startedUs;
     std::string error;
     render::Frame frame;
     try {
-        if (!config_.shaderDir.empty() && gpu.shaders.reloadIfChanged()) {
-            log::info("shaders").with("message", "reloaded");
-        }
         render::Request request = job.shown.view->request;
-        request.still = job.still;
+        // An answer names its map's hash; the map itself has no anti-aliasing to pay for.
+        request.still = job.still || (job.requestId && request.target == render::Target::Spectral);
         frame = gpu.pipeline.run(request);
         ++frames_;
         renderMsTotal_ = renderMsTotal_ + frame.stats.renderMs;

@@ -55,6 +55,7 @@ class RenderThread {
     };
     void work(std::promise<void>& warm);
     void serve(Gpu& gpu);
+    void reloadShaders(Gpu& gpu);  // with mutex_ held
     void draw(Gpu& gpu, FrameJob job);
 
     Config config_;

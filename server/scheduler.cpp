@@ -14,6 +14,10 @@ bool wantsStill(const Shown& shown) { return shown.view && shown.view->request.t
 
 }  // namespace
 
+bool Scheduler::hasRoom(const Entry& entry) {
+    return entry.streaming && entry.shown.view && entry.occupied + entry.drawing < entry.window;
+}
+
 void Scheduler::show(SessionKey session, Shown shown) {
     Entry& entry = entries_.at(session);
     entry.shown = std::move(shown);
@@ -59,15 +63,28 @@ bool Scheduler::outdated(const FrameJob& job) const {
     return entry == entries_.end() || entry->second.shown.view != job.shown.view;
 }
 
+void Scheduler::redrawAll() {
+    for (auto& [session, entry] : entries_) {
+        entry.drawnVersion = 0;
+        entry.stillDue = wantsStill(entry.shown);
+    }
+}
+
 std::optional<FrameJob> Scheduler::next(std::uint64_t nowUs, std::uint64_t& wakeUs) {
     wakeUs = 0;
+    auto job = takeTurn(false, nowUs, wakeUs);
+    return job ? job : takeTurn(true, nowUs, wakeUs);
+}
+
+std::optional<FrameJob> Scheduler::takeTurn(bool still, std::uint64_t nowUs, std::uint64_t& wakeUs) {
     // From the one after the last served, around.
     auto at = entries_.upper_bound(last_);
     for (std::size_t i = 0; i < entries_.size(); ++i, ++at) {
         if (at == entries_.end()) {
             at = entries_.begin();
         }
-        if (auto job = take(at->first, at->second, nowUs, wakeUs)) {
+        auto job = still ? takeStill(at->first, at->second, nowUs, wakeUs) : takeMoving(at->first, at->second, nowUs, wakeUs);
+        if (job) {
             last_ = at->first;
             return job;
         }
@@ -75,42 +92,45 @@ std::optional<FrameJob> Scheduler::next(std::uint64_t nowUs, std::uint64_t& wake
     return std::nullopt;
 }
 
-std::optional<FrameJob> Scheduler::take(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
-    FrameJob job{.session = session, .order = order_ + 1, .startedUs = nowUs};
-    if (!entry.requests.empty()) {
-        Request& request = entry.requests.front();
-        job.shown = std::move(request.shown);
-        job.still = request.still;
-        job.requestId = request.id;
-        entry.requests.pop_front();
-        ++order_;
-        return job;
-    }
-    if (!entry.streaming || !entry.shown.view || entry.occupied + entry.drawing >= entry.window) {
-        return std::nullopt;
-    }
-    if (entry.version != entry.drawnVersion) {
-        if (nowUs < entry.notBeforeUs) {
-            noteWake(wakeUs, entry.notBeforeUs);
-            return std::nullopt;
-        }
-        entry.drawnVersion = entry.version;
-        entry.notBeforeUs = nowUs + static_cast<std::uint64_t>(1e6 / entry.shown.view->stream.maxFps);
-    } else if (entry.stillDue && entry.drawing == 0) {
-        const std::uint64_t dueUs = entry.quietSinceUs + kStillAfterUs;
-        if (nowUs < dueUs) {
-            noteWake(wakeUs, dueUs);
-            return std::nullopt;
-        }
-        entry.stillDue = false;
-        job.still = true;
-    } else {
-        return std::nullopt;
-    }
-    job.shown = entry.shown;
+FrameJob Scheduler::jobOf(SessionKey session, Entry& entry, bool still, std::uint64_t nowUs) {
     ++entry.drawing;
-    ++order_;
-    return job;
+    return {.session = session, .shown = entry.shown, .still = still, .order = ++order_, .startedUs = nowUs};
+}
+
+std::optional<FrameJob> Scheduler::takeMoving(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
+    if (!entry.requests.empty()) {
+        Request request = std::move(entry.requests.front());
+        entry.requests.pop_front();
+        return FrameJob{.session = session,
+                        .shown = std::move(request.shown),
+                        .still = request.still,
+                        .requestId = request.id,
+                        .order = ++order_,
+                        .startedUs = nowUs};
+    }
+    if (!hasRoom(entry) || entry.version == entry.drawnVersion) {
+        return std::nullopt;
+    }
+    if (nowUs < entry.notBeforeUs) {
+        noteWake(wakeUs, entry.notBeforeUs);
+        return std::nullopt;
+    }
+    entry.drawnVersion = entry.version;
+    entry.notBeforeUs = nowUs + static_cast<std::uint64_t>(1e6 / entry.shown.view->stream.maxFps);
+    return jobOf(session, entry, false, nowUs);
+}
+
+std::optional<FrameJob> Scheduler::takeStill(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
+    if (!hasRoom(entry) || !entry.stillDue || entry.drawing > 0 || entry.version != entry.drawnVersion) {
+        return std::nullopt;
+    }
+    const std::uint64_t dueUs = entry.quietSinceUs + kStillAfterUs;
+    if (nowUs < dueUs) {
+        noteWake(wakeUs, dueUs);
+        return std::nullopt;
+    }
+    entry.stillDue = false;
+    return jobOf(session, entry, true, nowUs);
 }
 
 }  // namespace caustream

@@ -34,7 +34,7 @@ struct FrameJob {
 class Scheduler {
    public:
     static constexpr std::uint64_t kStillAfterUs = 250'000;
-    static constexpr std::size_t kMaxRequests = 8;  // frame.request, per session
+    static constexpr std::size_t kMaxRequests = 4;  // frame.request, per session
 
     void add(SessionKey session) { entries_[session]; }
     void remove(SessionKey session) { entries_.erase(session); }
@@ -54,7 +54,11 @@ class Scheduler {
     // True if something newer than `job` is to be shown.
     bool outdated(const FrameJob& job) const;
 
-    // The next frame to draw; nothing now: `wakeUs` is when to ask again, 0: when something changes.
+    // Everyone's picture is drawn anew: the shaders changed.
+    void redrawAll();
+
+    // The next frame to draw, what moves before what rests; nothing now: `wakeUs` is when to ask again, 0: when something
+    // changes.
     std::optional<FrameJob> next(std::uint64_t nowUs, std::uint64_t& wakeUs);
 
    private:
@@ -72,7 +76,11 @@ class Scheduler {
         std::uint64_t quietSinceUs = 0;  // the last change, frame or acknowledgement: a slow frame is no idle time
         std::deque<Request> requests;
     };
-    std::optional<FrameJob> take(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs);
+    static bool hasRoom(const Entry& entry);
+    std::optional<FrameJob> takeTurn(bool still, std::uint64_t nowUs, std::uint64_t& wakeUs);
+    std::optional<FrameJob> takeMoving(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs);
+    std::optional<FrameJob> takeStill(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs);
+    FrameJob jobOf(SessionKey session, Entry& entry, bool still, std::uint64_t nowUs);
 
     std::map<SessionKey, Entry> entries_;
     SessionKey last_ = 0;

@@ -21,6 +21,7 @@ using protocol::DecodeError;
 using protocol::ErrorCode;
 
 constexpr std::uint64_t kUsPerS = 1'000'000;
+constexpr std::uint32_t kRetryMs = 2000;
 constexpr double kChunksPerS = 2000;                        // credit bounds the bytes, this the smallest of chunks
 constexpr std::size_t kMaxDeferredBytes = 4u << 20;         // while a scene loads
 constexpr std::size_t kMaxWaitingTextBytes = 16u << 20;     // for a client that talks and does not read
@@ -127,7 +128,9 @@ void Viewer::on(const protocol::Hello& hello) {
     const protocol::SceneRef& scene = applied->state.scene;
     if (scene.kind == protocol::SceneRef::Kind::Asset && !desk_.scenes.find(scene)) {
         missing.push_back(scene.name);
-        patch = {{"stream", applied->document.value("stream", protocol::Json::object())}};
+        for (const char* ofThatScene : {"scene", "lights", "materials", "camera"}) {
+            patch.erase(ofThatScene);
+        }
     }
     change({.patch = std::move(patch), .done = [this, withdraw, id = hello.id, missing](const auto& error) {
                 if (error) {
@@ -194,7 +197,7 @@ void Viewer::setStreaming(std::uint32_t id, bool streaming) {
 }
 
 void Viewer::on(const protocol::FrameRequest& request) {
-    const bool taken = requestsPending_ < Scheduler::kMaxRequests && desk_.renderer->schedule([&](Scheduler& scheduler) {
+    const bool taken = requestsPending_ + outbox_.answersWaiting() < Scheduler::kMaxRequests && desk_.renderer->schedule([&](Scheduler& scheduler) {
         return scheduler.request(connection_.id(), request.id, request.still);
     });
     if (!taken) {
@@ -298,7 +301,11 @@ void Viewer::refuse(const DecodeError& error) {
 
 void Viewer::fail(const DecodeError& error) {
     ++desk_.refusedMessages;
-    send(protocol::errorMessage(error, true));
+    protocol::ErrorMessage message = protocol::errorMessage(error, true);
+    if (error.code == ErrorCode::Busy || error.code == ErrorCode::RateLimited) {
+        message.retryMs = kRetryMs;
+    }
+    send(message);
     const auto code = protocol::closeCodeOf(error.code).value_or(CloseCode::BadMessage);
     connection_.close(static_cast<std::uint16_t>(code), error.message);
 }

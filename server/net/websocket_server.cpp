@@ -1,7 +1,6 @@
 #include "net/websocket_server.h"
 
 #include <arpa/inet.h>
-#include <libwebsockets.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 
 #include "error.h"
 #include "log.h"
+#include "net/http_exchange.h"
 #include "protocol/messages.h"
 
 static_assert(caustream::stream::kSocketHeadroom >= LWS_PRE, "libwebsockets writes its framing before the payload");
@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kReceiveBytes = 64u << 10;  // per read: larger than the default, as chunks are
 constexpr std::size_t kSendBytes = 4u << 20;      // per write: below it every frame goes out in one piece, uncopied
+constexpr unsigned kMaxSockets = 256;             // sessions, the page's requests, and those that have not said hello yet
 constexpr int kTickUs = 250'000;
 constexpr int kCloseS = 5;  // for the far side to take what is left before its socket is dropped
 
@@ -53,68 +54,6 @@ void logLine(int level, const char* text) {
         line.remove_suffix(1);
     }
     (level & LLL_ERR ? log::warning("libwebsockets") : log::debug("libwebsockets")).with("message", line);
-}
-
-std::string header(lws* socket, lws_token_indexes token) {
-    const int length = lws_hdr_total_length(socket, token);
-    if (length <= 0) {
-        return {};
-    }
-    std::string value(static_cast<std::size_t>(length) + 1, '\0');
-    const int copied = lws_hdr_copy(socket, value.data(), length + 1, token);
-    value.resize(copied > 0 ? static_cast<std::size_t>(copied) : 0);
-    return value;
-}
-
-struct HttpExchange {  // libwebsockets' memory, zeroed; the body is ours until the exchange ends
-    std::string* body;
-};
-
-void endExchange(HttpExchange* exchange) {
-    if (exchange) {
-        delete std::exchange(exchange->body, nullptr);
-    }
-}
-
-bool addHeader(lws* socket, std::string_view name, std::string_view value, unsigned char** at, unsigned char* end) {
-    return lws_add_http_header_by_name(socket, reinterpret_cast<const unsigned char*>(std::string(name).c_str()),
-                                       reinterpret_cast<const unsigned char*>(value.data()),
-                                       static_cast<int>(value.size()), at, end) == 0;
-}
-
-int respond(lws* socket, HttpExchange* exchange, HttpResponse response) {
-    unsigned char buffer[LWS_PRE + 4096];
-    unsigned char *start = buffer + LWS_PRE, *at = start, *end = buffer + sizeof buffer;
-    const bool good =
-        lws_add_http_common_headers(socket, static_cast<unsigned>(response.status), response.contentType.c_str(),
-                                    response.body.size(), &at, end) == 0 &&
-        addHeader(socket, "cache-control:", response.etag.empty() ? "no-store" : "no-cache", &at, end) &&
-        (response.etag.empty() || addHeader(socket, "etag:", response.etag, &at, end)) &&
-        addHeader(socket, "content-security-policy:", contentSecurityPolicy(), &at, end) &&
-        addHeader(socket, "x-content-type-options:", "nosniff", &at, end) &&
-        addHeader(socket, "referrer-policy:", "no-referrer", &at, end) &&
-        lws_finalize_write_http_header(socket, start, &at, end) == 0;
-    if (!good) {
-        return -1;
-    }
-    if (response.body.empty()) {
-        return lws_http_transaction_completed(socket) ? -1 : 0;
-    }
-    endExchange(exchange);
-    exchange->body = new std::string(std::string(LWS_PRE, '\0') + response.body);
-    lws_callback_on_writable(socket);
-    return 0;
-}
-
-int writeBody(lws* socket, HttpExchange* exchange) {
-    if (!exchange->body) {
-        return 0;
-    }
-    const int size = static_cast<int>(exchange->body->size() - LWS_PRE);
-    const int sent = lws_write(socket, reinterpret_cast<unsigned char*>(exchange->body->data()) + LWS_PRE,
-                               static_cast<std::size_t>(size), LWS_WRITE_HTTP_FINAL);
-    endExchange(exchange);
-    return sent < size || lws_http_transaction_completed(socket) ? -1 : 0;
 }
 
 }  // namespace
@@ -166,7 +105,7 @@ struct WebSocketServer::Callbacks {
                         return refused;
                     }
                     const HttpRequest request{std::string(static_cast<const char*>(in)),
-                                              header(socket, WSI_TOKEN_HTTP_IF_NONE_MATCH)};
+                                              requestHeader(socket, WSI_TOKEN_HTTP_IF_NONE_MATCH)};
                     return respond(socket, exchange, server(socket).endpoint_.http(request));
                 });
             case LWS_CALLBACK_HTTP_WRITEABLE: return guarded([&] { return writeBody(socket, exchange); });
@@ -181,8 +120,8 @@ struct WebSocketServer::Callbacks {
         switch (reason) {
             case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
                 return guarded([&] {
-                    const std::string path = header(socket, WSI_TOKEN_GET_URI);
-                    const bool page = sameHost(header(socket, WSI_TOKEN_ORIGIN), header(socket, WSI_TOKEN_HOST));
+                    const std::string path = requestHeader(socket, WSI_TOKEN_GET_URI);
+                    const bool page = sameHost(requestHeader(socket, WSI_TOKEN_ORIGIN), requestHeader(socket, WSI_TOKEN_HOST));
                     if (path == "/ws" && page) {
                         return 0;
                     }
@@ -248,6 +187,7 @@ WebSocketServer::WebSocketServer(const ServerOptions& options, Endpoint& endpoin
     info.alpn = "http/1.1";
     info.pt_serv_buf_size = kReceiveBytes;
     info.max_http_header_data = 16384;
+    info.fd_limit_per_thread = kMaxSockets;
     info.retry_and_idle_policy = &retry;
     info.user = this;
     info.gid = static_cast<gid_t>(-1);
@@ -305,7 +245,7 @@ void WebSocketServer::runPosted() {
         tasks.swap(posted_);
     }
     for (const auto& task : tasks) {
-        task();
+        Callbacks::guarded([&] { return task(), 0; });
     }
 }
 
@@ -359,11 +299,11 @@ int WebSocketServer::write(Connection& connection) {
 }
 
 int WebSocketServer::refuse(lws* socket, bool upgrade) const {
-    if (upgrade && header(socket, WSI_TOKEN_UPGRADE) != "websocket") {  // h2c would open the HTTP/2 code
+    if (upgrade && requestHeader(socket, WSI_TOKEN_UPGRADE) != "websocket") {  // h2c would open the HTTP/2 code
         lws_return_http_status(socket, 400, "Upgrade must be websocket");
         return -1;
     }
-    if (options_.checkHost && !isLocalName(header(socket, WSI_TOKEN_HOST))) {
+    if (options_.checkHost && !isLocalName(requestHeader(socket, WSI_TOKEN_HOST))) {
         lws_return_http_status(socket, 403, "Host not allowed");
         return -1;
     }

@@ -48,7 +48,10 @@ class Outbox {
     std::uint32_t unacknowledged() const { return static_cast<std::uint32_t>(waiting_.size()); }
     std::uint32_t window() const { return window_; }
 
-    // And those that wait for the socket to take them.
+    // Frames that frame.request asked for and the socket has not taken.
+    std::size_t answersWaiting() const { return requested_.size() + (staged_ && staged_->requestId ? 1 : 0); }
+
+    // The unacknowledged and those that wait for the socket to take them.
     std::uint32_t occupied() const {
         const bool stagedStream = staged_ && !staged_->requestId;
         return unacknowledged() + (mailbox_.peek() ? 1u : 0u) + (stagedStream ? 1u : 0u);
