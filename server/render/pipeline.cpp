@@ -263,7 +263,11 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     };
     for (const int cookie : {0, 1}) {
         impl_->shaders.program("photon_list", {{"COOKIE", cookie}});
-        for (const int bands : {0, 1}) impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", cookie}});
+        for (const int bands : {0, 1}) {
+            for (const int retry : {0, 1}) {
+                impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", cookie}, {"RETRY", retry}});
+            }
+        }
     }
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
     for (const int finest : {0, 1}) impl_->shaders.program("map_resolve", {{"FINEST", finest}});

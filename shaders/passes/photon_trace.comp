@@ -1,5 +1,7 @@
 // Traces each listed photon at its wavelengths through two interfaces to the receivers and deposits its flux in the
-// spectral map, in fixed point: the sums are the same whatever the order.
+// spectral map. The first wavelength searches its way from nothing; the others start where it ended. Those that do not
+// settle there go to a second dispatch (RETRY 1) that searches each from nothing, as a branch costs every photon the
+// time of those that take it.
 #include "shared/layout.h"
 #include "common/view.glsl"
 #include "common/emission.glsl"
@@ -16,6 +18,11 @@ layout(std430, binding = kBindList) readonly buffer List {
 };
 layout(std430, binding = kBindMap) buffer Map { uint map[]; };          // texel-major; inner map's levels, then the outer
 layout(std430, binding = kBindLedger) buffer Ledger { uint ledger[]; };
+layout(std430, binding = kBindRetry) buffer Retry {
+    uint retryGroups[3];
+    uint retryCount;
+    uvec4 retries[];             // texel, level of the pyramid (float bits), wavelengths still to trace (64 bits)
+};
 
 uniform sampler2D u_front;           // emission view
 uniform sampler2D u_back;            // back view
@@ -34,117 +41,172 @@ uniform int u_levels;                          // of the inner map's pyramid, 1.
 uniform int u_backSteps, u_receiverSteps;
 uniform float u_exitTolerance;                 // m
 uniform float u_reach;                         // m: farther than any receiver
+#include "common/deposit.glsl"
 
-// Where a photon lands: the lowest of 2x2 texels and the place between them. Texels beyond the border give their share
-// to their neighbour.
-struct Place {
-    int texel;        // index of the lowest texel; -1: nowhere
-    int width;        // texels of its map in a row
-    vec2 f;
+const float kLevelBias = 0.6;   // photons a texel apart show their lattice in texels of just that width
+const int kFollowSteps = 2;     // Newton steps from a neighbour's exit point
+
+// A photon where it meets the caster, in the back view's space.
+struct Entry {
+    vec4 layer;        // of the front layer, emission view
+    vec3 position, normal, direction;
+    float flux;
 };
 
-Place placeAt(vec2 uv, ivec2 size, int firstTexel) {
-    vec2 at = clamp(uv * vec2(size) - 0.5, vec2(0.0), vec2(size) - 1.0);
-    ivec2 base = min(ivec2(at), size - 2);
-    return Place(firstTexel + base.x + base.y * size.x, size.x, at - vec2(base));
+Entry entryAt(ivec2 texel) {
+    vec2 size = vec2(textureSize(u_front, 0));
+    vec2 uv = (vec2(texel) + 0.5) / size;
+    vec4 layer = texelFetch(u_front, clamp(texel, ivec2(0), ivec2(size) - 1), 0);
+    vec3 direction = viewDirection(u_emission, uv);
+    mat3 turn = mat3(u_emissionToBack);
+    return Entry(layer, (u_emissionToBack * vec4(layerToView(u_emission, uv, layer.w), 1.0)).xyz, turn * layer.xyz,
+                 turn * direction, emittedShare(direction) * texelExtent(u_emission, uv, 1.0 / size));
 }
 
-int firstTexelOf(int level, ivec2 size) {
-    int first = 0;
-    for (int i = 0; i < level; ++i) first += (size.x >> i) * (size.y >> i);
-    return first;
+// First guess of the way inside: along the light's own ray.
+float guessWay(Entry entry) {
+    vec2 uv = viewToUv(u_backView, entry.position);
+    vec4 behind;
+    if (!sampleLayer(u_back, uv, behind)) return 5.0 * u_exitTolerance;
+    return max(distance(layerToView(u_backView, uv, behind.w), entry.position), 0.01 * u_exitTolerance);
 }
 
-vec4 shares(vec2 f) {
-    return vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
-}
-
-int cornerOf(Place place, int i) { return place.texel + (i & 1) + (i >> 1) * place.width; }
-
-#if BANDS
-void deposit(Place place, int k, float flux) {
-    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
-    for (int i = 0; i < 4; ++i) atomicAdd(map[cornerOf(place, i) * u_bands + int(u_glass[k].w)], uint(share[i] + 0.5));
-}
-#else
-// Neighbouring wavelengths mostly land in the same texels: their XYZ is gathered here and written once.
-struct Pending {
-    Place place;
-    vec3 corner0, corner1, corner2, corner3;
+// What became of a photon's flux, as rows of the ledger.
+struct Tally {
+    float absorbed, reflected, total;
 };
 
-void addTo(int texel, vec3 xyz) {
-    uvec3 amount = uvec3(xyz + 0.5);
-    atomicAdd(map[texel * 3], amount.x);
-    atomicAdd(map[texel * 3 + 1], amount.y);
-    atomicAdd(map[texel * 3 + 2], amount.z);
+// From entry to the outside: what is left of `flux`, and the ray in the map view's space. `way` starts as a guess.
+const int kLeaves = 0, kTotal = 1, kUnsettled = 2;
+int passThrough(Entry entry, int k, int steps, inout float way, out vec3 exitNormal, out vec3 origin, out vec3 ray,
+                inout float flux, out Tally tally) {
+    float eta = u_glass[k].x;
+    vec3 inside, outside;
+    float reflectance;
+    tally = Tally(0.0, 0.0, 0.0);
+    exitNormal = origin = ray = vec3(0.0);
+    bool enters = refractDielectric(entry.direction, entry.normal, eta, inside, reflectance);
+    if (!enters) {
+        tally.total = flux;
+        return kTotal;
+    }
+    tally.reflected = flux * reflectance;
+    flux *= 1.0 - reflectance;
+    if (!findExit(u_backView, u_back, entry.position, inside, steps, u_exitTolerance, way, exitNormal)) return kUnsettled;
+    tally.absorbed = flux * (1.0 - exp(-u_glass[k].y * way));
+    flux -= tally.absorbed;
+    if (!refractDielectric(inside, -exitNormal, 1.0 / eta, outside, reflectance)) {
+        tally.total = flux;
+        return kTotal;
+    }
+    tally.reflected += flux * reflectance;
+    flux *= 1.0 - reflectance;
+    origin = (u_backToMap * vec4(entry.position + way * inside, 1.0)).xyz;
+    ray = mat3(u_backToMap) * outside;
+    return kLeaves;
 }
-
-void flush(inout Pending pending) {
-    if (pending.place.texel < 0) return;
-    addTo(cornerOf(pending.place, 0), pending.corner0);
-    addTo(cornerOf(pending.place, 1), pending.corner1);
-    addTo(cornerOf(pending.place, 2), pending.corner2);
-    addTo(cornerOf(pending.place, 3), pending.corner3);
-    pending.corner0 = pending.corner1 = pending.corner2 = pending.corner3 = vec3(0.0);
-    pending.place.texel = -1;
-}
-
-void deposit(inout Pending pending, Place place, int k, float flux) {
-    if (place.texel != pending.place.texel) flush(pending);
-    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
-    vec3 xyz = u_xyz[k].xyz;
-    pending.place = place;
-    pending.corner0 += share.x * xyz;
-    pending.corner1 += share.y * xyz;
-    pending.corner2 += share.z * xyz;
-    pending.corner3 += share.w * xyz;
-}
-#endif
 
 void book(int row, float flux) {
     uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
     if (flux > 0.0) atomicAdd(ledger[bank + uint(row)], uint(flux * u_ledgerPerFlux + 0.5));
 }
 
-const float kLevelBias = 0.6;   // photons a texel apart show their lattice in texels of just that width
-
-// The way of one photon at one wavelength, as far as its neighbours go the same.
-struct Path {
-    float way;            // inside the caster, m
-    Meeting meeting;      // with the receivers, in the map view
-    vec3 exitNormal;
-};
-
-// Where the photon of a neighbouring texel lands in the inner map; false when it takes another way: another facet, a step
-// in depth, another receiver.
-bool neighbourLanding(ivec2 texel, vec4 own, float eta, Path path, out vec2 at) {
+#if RETRY
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= retryCount) return;
+    uvec4 retry = retries[item];
     ivec2 size = textureSize(u_front, 0);
+    Entry entry = entryAt(ivec2(retry.x % uint(size.x), retry.x / uint(size.x)));
+    float guess = guessWay(entry);
+    ivec2 innerSize = textureSize(u_receivers, 0);
+    ivec2 outerSize = textureSize(u_outerReceivers, 0);
+    int outerFirst = firstTexelOf(u_levels, innerSize);
+    Level level = levelOf(uintBitsToFloat(retry.y), innerSize);
+
+    float absorbed = 0.0, reflected = 0.0, total = 0.0, rejected = 0.0, left = 0.0, missed = 0.0;
+    uvec2 remaining = retry.zw;
+    while ((remaining.x | remaining.y) != 0u) {
+        int k = remaining.x != 0u ? findLSB(remaining.x) : 32 + findLSB(remaining.y);
+        if (k < 32) remaining.x &= remaining.x - 1u;
+        else remaining.y &= remaining.y - 1u;
+
+        float weight = u_glass[k].z, flux = entry.flux, way = guess;
+        vec3 exitNormal, origin, ray;
+        Tally tally;
+        int passed = passThrough(entry, k, u_backSteps, way, exitNormal, origin, ray, flux, tally);
+        absorbed += weight * tally.absorbed;
+        reflected += weight * tally.reflected;
+        total += weight * tally.total;
+        if (passed == kUnsettled) rejected += weight * flux;
+        if (passed != kLeaves) continue;
+
+        vec2 at;
+        Meeting met;
+        int found = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, met);
+        Place fine = placeAt(at, level.fineSize, level.fineFirst);
+        float coarseShare = level.coarseShare;
+        Place coarse = placeAt(at, level.coarseSize, level.coarseFirst);
+        if (found == kLeftView || found == kNoReceiver) {
+            found = findReceiver(u_outerView, u_outerReceivers, origin, ray, u_reach, u_receiverSteps, at, met);
+            fine = placeAt(at, outerSize, outerFirst);
+            coarseShare = 0.0;
+        }
+        if (found == kHit) {
+#if BANDS
+            deposit(fine, k, flux * (1.0 - coarseShare));
+            if (coarseShare > 0.0) deposit(coarse, k, flux * coarseShare);
+#else
+            Pending pending = nothingPending();
+            deposit(pending, fine, k, flux * (1.0 - coarseShare));
+            flush(pending);
+            if (coarseShare > 0.0) deposit(pending, coarse, k, flux * coarseShare);
+            flush(pending);
+#endif
+        }
+        rejected += found == kRejected ? weight * flux : 0.0;
+        left += found == kLeftView ? weight * flux : 0.0;
+        missed += found == kNoReceiver ? weight * flux : 0.0;
+    }
+    book(kLedgerAbsorbed, absorbed);
+    book(kLedgerReflected, reflected);
+    book(kLedgerTotalReflection, total);
+    book(kLedgerRejected, rejected);
+    book(kLedgerLeftMap, left);
+    book(kLedgerNoReceiver, missed);
+}
+#else
+
+// Where the photon of a neighbouring texel lands in the inner map at the first wavelength; false when it takes another
+// way: another facet, a step in depth, another receiver.
+bool neighbourLanding(ivec2 texel, float way, vec3 ownExitNormal, Meeting meeting, out vec2 at) {
+    vec3 exitNormal, origin, ray;
+    Tally tally;
+    Entry entry = entryAt(texel);
+    float flux = entry.flux;
     at = vec2(0.0);
-    vec4 front = texelFetch(u_front, clamp(texel, ivec2(0), size - 1), 0);
-    if (dot(front.xyz, own.xyz) < kSameSurfaceCos || abs(front.w - own.w) > 0.05 * own.w) return false;
-    vec2 uv = (vec2(texel) + 0.5) / vec2(size);
-    mat3 turn = mat3(u_emissionToBack);
-    vec3 entry = (u_emissionToBack * vec4(layerToView(u_emission, uv, front.w), 1.0)).xyz;
-    vec3 inside, outside, exitNormal;
-    float reflectance;
-    if (!refractDielectric(turn * viewDirection(u_emission, uv), turn * front.xyz, eta, inside, reflectance)) return false;
-    if (!findExit(u_backView, u_back, entry, inside, 2, u_exitTolerance, path.way, exitNormal)) return false;
-    if (dot(exitNormal, path.exitNormal) < kSameSurfaceCos) return false;
-    if (!refractDielectric(inside, -exitNormal, 1.0 / eta, outside, reflectance)) return false;
-    vec3 origin = (u_backToMap * vec4(entry + path.way * inside, 1.0)).xyz;
-    return followReceiver(u_mapView, u_receivers, origin, mat3(u_backToMap) * outside, path.meeting, at);
+    return passThrough(entry, 0, kFollowSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves &&
+           dot(exitNormal, ownExitNormal) > kSameSurfaceCos &&
+           followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
+}
+
+bool sameSurface(vec4 layer, vec4 own) {
+    return dot(layer.xyz, own.xyz) > kSameSurfaceCos && abs(layer.w - own.w) < 0.05 * own.w;
 }
 
 // Level of the pyramid whose texels are as wide as the photons lie apart around `at`, so that they neither leave holes
-// nor blur what they resolve. Between two levels a photon's flux is split, so that no edge shows where they change.
-float levelAt(ivec2 texel, vec4 front, float eta, Path path, vec2 at) {
+// nor blur what they resolve.
+float levelAt(ivec2 texel, vec4 own, float way, vec3 exitNormal, Meeting meeting, vec2 at) {
     vec2 mapSize = vec2(textureSize(u_receivers, 0));
+    ivec2 most = textureSize(u_front, 0) - 1;
     float apart = -1.0;
     for (int axis = 0; axis < 2; ++axis) {
         ivec2 offset = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
+        ivec2 ahead = min(texel + offset, most), behind = max(texel - offset, ivec2(0));
+        bool forwards = sameSurface(texelFetch(u_front, ahead, 0), own) && ahead != texel;
         vec2 other;
-        if (neighbourLanding(texel + offset, front, eta, path, other) || neighbourLanding(texel - offset, front, eta, path, other)) {
+        if ((forwards || sameSurface(texelFetch(u_front, behind, 0), own)) &&
+            neighbourLanding(forwards ? ahead : behind, way, exitNormal, meeting, other)) {
             apart = max(apart, length((other - at) * mapSize));
         }
     }
@@ -159,125 +221,61 @@ void main() {
     ivec2 size = textureSize(u_front, 0);
     uint index = texels[photon];
     ivec2 texel = ivec2(index % uint(size.x), index / uint(size.x));
-    vec2 uv = (vec2(texel) + 0.5) / vec2(size);
+    Entry entry = entryAt(texel);
 
-    // Entry point, in the back view's space from here on
-    vec4 front = texelFetch(u_front, texel, 0);
-    vec3 direction = viewDirection(u_emission, uv);
-    float emitted = emittedShare(direction) * texelExtent(u_emission, uv, 1.0 / vec2(size));
-    mat3 turn = mat3(u_emissionToBack);
-    vec3 entry = (u_emissionToBack * vec4(layerToView(u_emission, uv, front.w), 1.0)).xyz;
-    vec3 entryNormal = turn * front.xyz;
-    direction = turn * direction;
-
-    // First guess of the way inside: along the light's own ray
-    vec2 backUv = viewToUv(u_backView, entry);
-    vec4 behind;
-    float guess = 5.0 * u_exitTolerance;
-    if (sampleLayer(u_back, backUv, behind)) guess = max(distance(layerToView(u_backView, backUv, behind.w), entry), 0.01 * u_exitTolerance);
-
-    ivec2 innerSize = textureSize(u_receivers, 0);
-    ivec2 outerSize = textureSize(u_outerReceivers, 0);
-    float level = -1.0;               // not known yet
-    ivec2 fineSize = innerSize;
-    int fineFirst = 0;
-    float coarseShare = 0.0;          // of the flux, for the next coarser level
-    ivec2 coarseSize = innerSize;
-    int coarseFirst = 0;
-#if !BANDS
-    Pending pending = Pending(Place(-1, 0, vec2(0.0)), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    Pending pendingCoarse = pending;
-#endif
-    float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0, rejected = 0.0, left = 0.0, missed = 0.0;
-    float way = guess;
-    int backSteps = u_backSteps;
+    // The first wavelength's way, and how far its neighbours land
+    float way = guessWay(entry), level = 0.0, flux = entry.flux;
+    vec3 exitNormal, origin, ray;
+    vec2 at;
+    Tally tally;
     Meeting meeting = Meeting(0.0, 0.0);
-    for (int k = 0; k < u_wavelengths; ++k) {
-        float eta = u_glass[k].x;
-        float weight = u_glass[k].z;      // luminance, for the ledger
-        float flux = emitted;
-        onCasters += flux * weight;
+    if (passThrough(entry, 0, u_backSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves) {
+        if (findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) != kHit) meeting.slope = 0.0;
+        if (u_levels > 1 && meeting.slope > 0.0) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
+    }
+    Level pyramid = levelOf(level, textureSize(u_receivers, 0));
 
-        vec3 inside, outside, exitNormal;
-        float reflectance;
-        if (!refractDielectric(direction, entryNormal, eta, inside, reflectance)) {
-            total += flux * weight;
-            continue;
-        }
-        reflected += flux * reflectance * weight;
-        flux *= 1.0 - reflectance;
-
-        if (!findExit(u_backView, u_back, entry, inside, backSteps, u_exitTolerance, way, exitNormal)) {
-            rejected += flux * weight;
-            way = guess;
-            backSteps = u_backSteps;
-            continue;
-        }
-        backSteps = (u_backSteps + 1) / 2;   // the next wavelength starts where this one left
-        float kept = exp(-u_glass[k].y * way);
-        absorbed += flux * (1.0 - kept) * weight;
-        flux *= kept;
-
-        if (!refractDielectric(inside, -exitNormal, 1.0 / eta, outside, reflectance)) {
-            total += flux * weight;
-            continue;
-        }
-        reflected += flux * reflectance * weight;
-        flux *= 1.0 - reflectance;
-
-        vec3 origin = (u_backToMap * vec4(entry + way * inside, 1.0)).xyz;
-        vec3 ray = mat3(u_backToMap) * outside;
-        vec2 at;
-        Place place;
-        int found = kHit;
-        bool inInner = true;
-        if (followReceiver(u_mapView, u_receivers, origin, ray, meeting, at)) {
-            place = placeAt(at, fineSize, fineFirst);
-        } else {
-            found = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting);
-            if (found == kHit && level < 0.0) {
-                level = u_levels > 1 ? levelAt(texel, front, eta, Path(way, meeting, exitNormal), at) : 0.0;
-                int fine = int(level);
-                fineSize = innerSize >> fine;
-                fineFirst = firstTexelOf(fine, innerSize);
-                coarseShare = level - float(fine);
-                coarseSize = innerSize >> (fine + 1);
-                coarseFirst = firstTexelOf(fine + 1, innerSize);
-            }
-            inInner = found == kHit;
-            place = placeAt(at, fineSize, fineFirst);
-            if (found == kLeftView || found == kNoReceiver) {
-                found = findReceiver(u_outerView, u_outerReceivers, origin, ray, u_reach, u_receiverSteps, at, meeting);
-                place = placeAt(at, outerSize, firstTexelOf(u_levels, innerSize));
-                meeting.slope = 0.0;      // of another view
-            }
-        }
-        if (found == kHit) {
-            float coarse = inInner ? coarseShare : 0.0;
-#if BANDS
-            deposit(place, k, flux * (1.0 - coarse));
-            if (coarse > 0.0) deposit(placeAt(at, coarseSize, coarseFirst), k, flux * coarse);
-#else
-            deposit(pending, place, k, flux * (1.0 - coarse));
-            if (coarse > 0.0) deposit(pendingCoarse, placeAt(at, coarseSize, coarseFirst), k, flux * coarse);
+    // All wavelengths from there
+#if !BANDS
+    Pending fine = nothingPending(), coarse = nothingPending();
 #endif
-        } else if (found == kRejected) {
-            rejected += flux * weight;
-        } else if (found == kLeftView) {
-            left += flux * weight;
-        } else {
-            missed += flux * weight;
+    float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0;
+    uvec2 unsettled = uvec2(0u);
+    for (int k = 0; k < u_wavelengths; ++k) {
+        float weight = u_glass[k].z;
+        flux = entry.flux;
+        onCasters += weight * flux;
+        int passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
+        bool met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
+        if (!met && passed != kTotal) {
+            if (k < 32) unsettled.x |= 1u << k;
+            else unsettled.y |= 1u << (k - 32);
+            continue;
         }
+        absorbed += weight * tally.absorbed;
+        reflected += weight * tally.reflected;
+        total += weight * tally.total;
+        if (!met) continue;
+#if BANDS
+        deposit(placeAt(at, pyramid.fineSize, pyramid.fineFirst), k, flux * (1.0 - pyramid.coarseShare));
+        if (pyramid.coarseShare > 0.0) deposit(placeAt(at, pyramid.coarseSize, pyramid.coarseFirst), k, flux * pyramid.coarseShare);
+#else
+        deposit(fine, placeAt(at, pyramid.fineSize, pyramid.fineFirst), k, flux * (1.0 - pyramid.coarseShare));
+        if (pyramid.coarseShare > 0.0) deposit(coarse, placeAt(at, pyramid.coarseSize, pyramid.coarseFirst), k, flux * pyramid.coarseShare);
+#endif
     }
 #if !BANDS
-    flush(pending);
-    flush(pendingCoarse);
+    flush(fine);
+    flush(coarse);
 #endif
+    if ((unsettled.x | unsettled.y) != 0u) {
+        uint place = atomicAdd(retryCount, 1u);
+        atomicMax(retryGroups[0], place / uint(kGroupSize) + 1u);
+        retries[place] = uvec4(index, floatBitsToUint(level), unsettled);
+    }
     book(kLedgerOnCasters, onCasters);
     book(kLedgerAbsorbed, absorbed);
     book(kLedgerReflected, reflected);
     book(kLedgerTotalReflection, total);
-    book(kLedgerRejected, rejected);
-    book(kLedgerLeftMap, left);
-    book(kLedgerNoReceiver, missed);
 }
+#endif

@@ -17,6 +17,7 @@ LAYOUT_CONST kListHeader = 4;          // uints before a photon list's texels: t
 LAYOUT_CONST kBindList = 0;
 LAYOUT_CONST kBindMap = 1;
 LAYOUT_CONST kBindLedger = 2;
+LAYOUT_CONST kBindRetry = 3;
 
 // Rows of the energy ledger, fixed point in the map's unit, luminance-weighted. Each exists kLedgerBanks times, a cache
 // line apart, so that two processors do not wait for each other; the banks are summed on the CPU.

@@ -7,8 +7,9 @@
 
 namespace caustream::render {
 
-void PhotonTrace::run(const Inputs& in, const Outputs& out) {
-    const GLuint program = shaders_.program("photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}});
+void PhotonTrace::dispatch(const Inputs& in, int retry, const gl::Buffer& groups) {
+    const GLuint program = shaders_.program(
+        "photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}, {"RETRY", retry}});
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_emission", in.emission);
@@ -39,6 +40,16 @@ void PhotonTrace::run(const Inputs& in, const Outputs& out) {
         .set("u_back", 2)
         .set("u_receivers", 3)
         .set("u_outerReceivers", 4);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.get());
+    glDispatchComputeIndirect(0);
+}
+
+void PhotonTrace::run(const Inputs& in, const Outputs& out) {
+    const std::size_t photons = static_cast<std::size_t>(in.front.width()) * static_cast<std::size_t>(in.front.height());
+    retry_.ensure((1 + photons) * 4 * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "photons to trace again");
+    const GLuint header[layout::kListHeader] = {0, 1, 1, 0};
+    glNamedBufferSubData(retry_.get(), 0, sizeof header, header);
+
     glBindTextureUnit(0, in.front.get());
     if (in.cookie) glBindTextureUnit(1, in.cookie);
     glBindTextureUnit(2, in.back.get());
@@ -47,8 +58,10 @@ void PhotonTrace::run(const Inputs& in, const Outputs& out) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindList, in.list.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindMap, out.map.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, out.ledger.get());
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, in.list.get());
-    glDispatchComputeIndirect(0);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindRetry, retry_.get());
+    dispatch(in, 0, in.list);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);   // retry list -> its dispatch
+    dispatch(in, 1, retry_);
 }
 
 }  // namespace caustream::render

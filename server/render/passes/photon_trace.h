@@ -43,7 +43,10 @@ class PhotonTrace {
     void run(const Inputs& in, const Outputs& out);
 
    private:
+    void dispatch(const Inputs& in, int retry, const gl::Buffer& groups);
+
     gl::ShaderLibrary& shaders_;
+    gl::Buffer retry_;                // photons and wavelengths for the second dispatch
 };
 
 }  // namespace caustream::render

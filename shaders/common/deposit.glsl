@@ -1,0 +1,85 @@
+// Fixed-point deposits into the spectral map's pyramid (kBindMap), 2x2 bilinear: the sums are the same whatever the
+// order. Expects u_fixedPerFlux, u_xyz and, with BANDS, u_bands and u_glass of photon_trace.
+
+// Where a photon lands: the lowest of 2x2 texels and the place between them. Texels beyond the border give their share
+// to their neighbour.
+struct Place {
+    int texel;        // index of the lowest texel; -1: nowhere
+    int width;        // texels of its map in a row
+    vec2 f;
+};
+
+Place placeAt(vec2 uv, ivec2 size, int firstTexel) {
+    vec2 at = clamp(uv * vec2(size) - 0.5, vec2(0.0), vec2(size) - 1.0);
+    ivec2 base = min(ivec2(at), size - 2);
+    return Place(firstTexel + base.x + base.y * size.x, size.x, at - vec2(base));
+}
+
+// First texel of a level of the pyramid whose finest level has `size` texels.
+int firstTexelOf(int level, ivec2 size) {
+    int first = 0;
+    for (int i = 0; i < level; ++i) first += (size.x >> i) * (size.y >> i);
+    return first;
+}
+
+// A level between two of the pyramid's: flux is split between them.
+struct Level {
+    ivec2 fineSize, coarseSize;
+    int fineFirst, coarseFirst;
+    float coarseShare;
+};
+
+Level levelOf(float level, ivec2 size) {
+    int fine = int(level);
+    return Level(size >> fine, size >> (fine + 1), firstTexelOf(fine, size), firstTexelOf(fine + 1, size), level - float(fine));
+}
+
+vec4 shares(vec2 f) {
+    return vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
+}
+
+int cornerOf(Place place, int i) { return place.texel + (i & 1) + (i >> 1) * place.width; }
+
+#if BANDS
+void deposit(Place place, int k, float flux) {
+    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
+    for (int i = 0; i < 4; ++i) atomicAdd(map[cornerOf(place, i) * u_bands + int(u_glass[k].w)], uint(share[i] + 0.5));
+}
+#else
+// Neighbouring wavelengths mostly land in the same texels: their XYZ is gathered here and written once.
+struct Pending {
+    Place place;
+    vec3 corner0, corner1, corner2, corner3;
+};
+
+Pending nothingPending() {
+    return Pending(Place(-1, 0, vec2(0.0)), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+}
+
+void addTo(int texel, vec3 xyz) {
+    uvec3 amount = uvec3(xyz + 0.5);
+    atomicAdd(map[texel * 3], amount.x);
+    atomicAdd(map[texel * 3 + 1], amount.y);
+    atomicAdd(map[texel * 3 + 2], amount.z);
+}
+
+void flush(inout Pending pending) {
+    if (pending.place.texel < 0) return;
+    addTo(cornerOf(pending.place, 0), pending.corner0);
+    addTo(cornerOf(pending.place, 1), pending.corner1);
+    addTo(cornerOf(pending.place, 2), pending.corner2);
+    addTo(cornerOf(pending.place, 3), pending.corner3);
+    pending = nothingPending();
+}
+
+void deposit(inout Pending pending, Place place, int k, float flux) {
+    if (place.texel != pending.place.texel) flush(pending);
+    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
+    vec3 xyz = u_xyz[k].xyz;
+    pending.place = place;
+    pending.corner0 += share.x * xyz;
+    pending.corner1 += share.y * xyz;
+    pending.corner2 += share.z * xyz;
+    pending.corner3 += share.w * xyz;
+}
+#endif
