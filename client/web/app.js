@@ -75,6 +75,7 @@ function showLink(state, waitMs) {
     roundTripMs = null;
     files.lost();
     if (state === 'retry') status(waitMs < 400 ? 'Reconnecting' : `No connection; trying again in ${(waitMs / 1000).toFixed(1)} s`);
+    if (state === 'taken' || state === 'auth') status('Not connected');
     if (state === 'taken') problem('Another page has taken this session over. Reload to start a new one.');
     if (state === 'auth') byId('token').focus();
 }

@@ -57,7 +57,7 @@ export function showStats(stats) {
     byId('server-line').textContent = [facts.join(', ') + '.', ...(stats.warnings ?? [])].join(' ');
 
     byId('plan').tBodies[0].replaceChildren(...(stats.plan ?? []).map((entry) => {
-        const tr = row(cell(words(entry.pass)), cell(entry.run ? 'run' : 'skip'), cell(entry.reason));
+        const tr = row(cell(words(entry.pass)), cell(entry.run ? 'run' : 'skip', 'verdict'), cell(entry.reason));
         tr.className = entry.run ? 'run' : 'skip';
         return tr;
     }));
