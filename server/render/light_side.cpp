@@ -11,7 +11,7 @@ namespace caustream::render {
 namespace {
 
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
-constexpr int kOuterMapSize = 256;
+constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels
 constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
 
 std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words) {

@@ -1,5 +1,6 @@
 // Traces each listed photon at its wavelengths through two interfaces to the receivers and deposits its flux in the
-// spectral map. The first wavelength searches its way from nothing; the others start where it ended. Those that do not
+// spectral map. The longest wavelength, which is bent least, searches its way from nothing; the others start where it
+// ended. Those that do not
 // settle there go to a second dispatch (RETRY 1) that searches each from nothing, as a branch costs every photon the
 // time of those that take it.
 #include "shared/layout.h"
@@ -177,7 +178,7 @@ void main() {
 }
 #else
 
-// Where the photon of a neighbouring texel lands in the inner map at the first wavelength; false when it takes another
+// Where the photon of a neighbouring texel lands in the inner map at the longest wavelength; false when it takes another
 // way: another facet, a step in depth, another receiver.
 bool neighbourLanding(ivec2 texel, float way, vec3 ownExitNormal, Meeting meeting, out vec2 at) {
     vec3 exitNormal, origin, ray;
@@ -185,7 +186,7 @@ bool neighbourLanding(ivec2 texel, float way, vec3 ownExitNormal, Meeting meetin
     Entry entry = entryAt(texel);
     float flux = entry.flux;
     at = vec2(0.0);
-    return passThrough(entry, 0, kFollowSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves &&
+    return passThrough(entry, u_wavelengths - 1, kFollowSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves &&
            dot(exitNormal, ownExitNormal) > kSameSurfaceCos &&
            followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
 }
@@ -223,13 +224,13 @@ void main() {
     ivec2 texel = ivec2(index % uint(size.x), index / uint(size.x));
     Entry entry = entryAt(texel);
 
-    // The first wavelength's way, and how far its neighbours land
-    float way = guessWay(entry), level = 0.0, flux = entry.flux;
+    // The longest wavelength's way, and how far its neighbours land
+    float way = guessWay(entry), level = float(u_levels - 1), flux = entry.flux;
     vec3 exitNormal, origin, ray;
     vec2 at;
     Tally tally;
     Meeting meeting = Meeting(0.0, 0.0);
-    if (passThrough(entry, 0, u_backSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves) {
+    if (passThrough(entry, u_wavelengths - 1, u_backSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves) {
         if (findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) != kHit) meeting.slope = 0.0;
         if (u_levels > 1 && meeting.slope > 0.0) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
     }
@@ -241,7 +242,7 @@ void main() {
 #endif
     float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0;
     uvec2 unsettled = uvec2(0u);
-    for (int k = 0; k < u_wavelengths; ++k) {
+    for (int k = u_wavelengths - 1; k >= 0; --k) {
         float weight = u_glass[k].z;
         flux = entry.flux;
         onCasters += weight * flux;
