@@ -233,7 +233,7 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
         }
         timer.stage("dispersive_refraction", [&] {
             refraction.run({view, front, back, box, object->bounds, depth, glass, lighting},
-                           {request.transport.backSteps, request.transport.receiverSteps}, color);
+                           {request.transport.backSteps, request.transport.receiverSteps, request.still ? 6 : 2, request.still}, color);
         });
     }
 }

@@ -74,8 +74,8 @@ void main() {
         radiance += u_gloss * arriving * highlight(normal, toEye, to.xyz, u_roughness, F0);
     }
 #endif
-    // A hemisphere a little brighter from above and from one side, so that corners read in the dark; its mean is 1.
-    vec3 ambient = u_environment * (1.0 + dot(normal, vec3(0.08, 0.22, 0.14)));
+    // Brighter from above and from one side, so that corners read in the dark; its mean over directions is 1.
+    vec3 ambient = u_environment * (1.0 + dot(normal, vec3(0.2, 0.35, 0.05)));
     radiance += diffuse * (irradiance + ambient);
     o_radiance = vec4(min(radiance, vec3(6e4)), 1.0);  // below the largest half float
 }

@@ -1,8 +1,9 @@
-// A caster as the camera sees it. A few nodes (exact indices: the lowest, the middle, the highest) are traced: refract at
-// the front layer, walk to the back layer, refract out, search the receivers' picture. Wavelengths between two nodes look
+// A caster as the camera sees it. A few nodes (exact indices, from the lowest to the highest) are traced: refract at the
+// front layer, walk to the back layer, refract out, search the receivers' picture. Wavelengths between two nodes look
 // where interpolation puts them, each with its own colour and absorption: the cost hardly grows with their number. What
-// reflects inside (all of it beyond the critical angle) goes on as one ray of mean direction through both layers for a
-// few bounces. Every share ends in some colour, so shares always sum to 1: no black holes.
+// reflects inside (all of it beyond the critical angle) goes on through both layers for a few bounces, as one ray of mean
+// direction or, with SPLIT, as one ray for each node, which is where a gem's fire comes from. Every share ends in some
+// colour, so shares always sum to 1: no black holes.
 #include "common/lights.glsl"
 #include "common/optics.glsl"
 #include "common/picture.glsl"
@@ -16,7 +17,7 @@ uniform vec3 u_tint;
 uniform int u_backSteps;               // Newton steps of the first way through
 uniform int u_bounces;                 // interfaces met after the second
 uniform int u_nodeCount;
-uniform vec4 u_nodes[3];               // relative index, absorption (1/m), wavelengths up to it: first, one past the last
+uniform vec4 u_nodes[8];               // relative index, absorption (1/m), wavelengths up to it: first, one past the last
 uniform vec4 u_wavelengths[64];        // rgb weight; place between its nodes, 0..1
 uniform float u_absorption[64];        // 1/m
 #endif
@@ -72,6 +73,31 @@ Node traceNode(float index, vec3 pos, vec3 dir, vec3 normal, float guess) {
     node.sight = look(node.exit, leaves ? outside : node.inside);
     return node;
 }
+
+// The share `kept` of the light, still inside at `at` and on its way along `dir`: bounces until it is out.
+vec3 follow(vec3 kept, vec3 at, vec3 dir, float index, float absorption) {
+    vec3 color = vec3(0.0);
+    for (int bounce = 0; bounce < u_bounces; ++bounce) {
+        float toFront = 0.4 * u_diameter, toBack = toFront, R;
+        vec3 frontNormal, backNormal, outside;
+        bool onFront = walk(u_front, at, dir, 3, toFront, frontNormal) && toFront > 1e-3 * u_diameter;
+        bool onBack = walk(u_back, at, dir, 3, toBack, backNormal) && toBack > 1e-3 * u_diameter;
+        if (!(onFront || onBack)) break;
+        bool takesFront = onFront && (!onBack || toFront < toBack);
+        float t = takesFront ? toFront : toBack;
+        vec3 exitNormal = takesFront ? frontNormal : backNormal;
+        at += t * dir;
+        kept *= exp(-absorption * t);
+        if (refractDielectric(dir, -exitNormal, index, outside, R)) {
+            Sight seen = look(at, outside);
+            color += kept * (1.0 - R) * radiance(seen, seen, 0.0);
+        }
+        kept *= R;
+        dir = reflect(dir, exitNormal);
+        if (max(kept.r, max(kept.g, kept.b)) < 0.02) break;
+    }
+    return color + kept * surroundings(dir);
+}
 #endif
 
 void main() {
@@ -99,8 +125,9 @@ void main() {
 
     // From node to node, and the wavelengths between.
     vec3 reflected = vec3(0.0), kept = vec3(0.0);
-    vec4 mean = vec4(0.0), meanExit = vec4(0.0);  // of what stays inside: direction, absorption; exit, weight
-    float meanIndex = 0.0;
+    vec4 meanExit = vec4(0.0);      // of what stays inside, by weight; w: the weights' sum
+    vec3 meanDir = vec3(0.0);
+    vec2 meanGlass = vec2(0.0);     // index, absorption
     Node a, b;
     for (int n = 0; n < u_nodeCount; ++n) {
         a = b;
@@ -108,7 +135,7 @@ void main() {
         if (n == 0) a = b;
         Sight from = a.back < 1.0 ? a.sight : b.sight, to = b.back < 1.0 ? b.sight : a.sight;
         bool together = distance(from.uv, to.uv) < 0.15;
-        float nodeKept = 1e-9;
+        float nodeWeight = 1e-9;
         for (int i = int(u_nodes[n].z); i < int(u_nodes[n].w); ++i) {
             float f = u_wavelengths[i].w, R1 = mix(a.front, b.front, f), R2 = mix(a.back, b.back, f);
             vec3 weight = u_wavelengths[i].rgb;
@@ -116,36 +143,21 @@ void main() {
             reflected += weight * R1;
             color += arriving * (1.0 - R2) * radiance(from, to, together ? f : step(0.5, f));
             kept += arriving * R2;
-            nodeKept += R2;
+            nodeWeight += R2;
         }
-        meanExit += nodeKept * vec4(b.exit, 1.0);
-        mean += nodeKept * vec4(reflect(b.inside, b.normal), u_nodes[n].y);
-        meanIndex += nodeKept * u_nodes[n].x;
+#if SPLIT
+        color += follow(kept, b.exit, reflect(b.inside, b.normal), u_nodes[n].x, u_nodes[n].y);
+        kept = vec3(0.0);
+#else
+        meanExit += nodeWeight * vec4(b.exit, 1.0);
+        meanDir += nodeWeight * reflect(b.inside, b.normal);
+        meanGlass += nodeWeight * u_nodes[n].xy;
+#endif
     }
-
-    // What is still inside, as one ray.
-    vec3 at = meanExit.xyz / meanExit.w, dir = normalize(mean.xyz + 1e-9 * sight);
-    float index = meanIndex / meanExit.w, absorption = mean.w / meanExit.w;
-    for (int bounce = 0; bounce < u_bounces; ++bounce) {
-        float toFront = 0.4 * u_diameter, toBack = toFront, R;
-        vec3 frontNormal, backNormal, outside;
-        bool onFront = walk(u_front, at, dir, 3, toFront, frontNormal) && toFront > 1e-3 * u_diameter;
-        bool onBack = walk(u_back, at, dir, 3, toBack, backNormal) && toBack > 1e-3 * u_diameter;
-        bool takesFront = onFront && (!onBack || toFront < toBack);
-        if (!(onFront || onBack)) break;
-        float t = takesFront ? toFront : toBack;
-        vec3 exitNormal = takesFront ? frontNormal : backNormal;
-        at += t * dir;
-        kept *= exp(-absorption * t);
-        if (refractDielectric(dir, -exitNormal, index, outside, R)) {
-            Sight seen = look(at, outside);
-            color += kept * (1.0 - R) * radiance(seen, seen, 0.0);
-        }
-        kept *= R;
-        dir = reflect(dir, exitNormal);
-        if (max(kept.r, max(kept.g, kept.b)) < 0.02) break;
-    }
-    color += kept * surroundings(dir);
+#if !SPLIT
+    meanGlass /= meanExit.w;
+    color += follow(kept, meanExit.xyz / meanExit.w, normalize(meanDir + 1e-9 * sight), meanGlass.x, meanGlass.y);
+#endif
 #endif
     Sight mirror = look(pos, mirrored);
     color += reflected * radiance(mirror, mirror, 0.0) + keyHighlight(pos, mirrored, reflected);

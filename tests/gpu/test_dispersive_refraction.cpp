@@ -149,11 +149,11 @@ TEST_F(DispersiveRefractionTest, ASlabDisplacesByItsClosedForm) {
 
 TEST_F(DispersiveRefractionTest, AWhiteFurnaceShowsNoGlass) {
     const std::vector<glm::vec4> white(kSize * kSize, glm::vec4(1.0f));
-    for (const int bounces : {0, 2, 8}) {
+    for (const int bounces : {0, 2, 7, 8}) {
         for (const Glass& glassy : {oneIndex(1.5f), dispersive(7, 1.4f, 1.7f), dispersive(21, 2.2f, 2.6f)}) {
             SyntheticScene scene = wall();
             scene.addSphere(scene.material(glass()), {0, 0, 0}, 0.7f);
-            const auto after = see(scene, ahead_, {glassy}, white, {}, {.bounces = bounces});
+            const auto after = see(scene, ahead_, {glassy}, white, {}, {.bounces = bounces, .split = bounces == 7});
             // Weights sum to 1 whatever is absorbed, reflected or trapped; the rest is half-float rounding.
             for (const glm::vec4& texel : after) {
                 EXPECT_NEAR(texel.g, 1.0f, 4e-3f);
@@ -224,6 +224,7 @@ TEST_F(DispersiveRefractionTest, ExtremesStayFinite) {
         const Glass wild = dispersive(64, index, index * 1.5f);
         const auto after = see(scene, ahead_, {wild, wild, wild, wild}, {}, lighting, {16, 32, 16});
         EXPECT_TRUE(allFinite(after)) << index;
+        EXPECT_TRUE(allFinite(see(scene, ahead_, {wild, wild, wild, wild}, {}, lighting, {16, 32, 16, true}))) << index;
     }
 }
 

@@ -12,19 +12,20 @@ namespace caustream::render {
 
 namespace {
 
+constexpr std::size_t kNodes = 3, kSplitNodes = 8;  // traced exactly; the shader has room for 8
 constexpr int kSurroundings = 8;  // texels a side, as the shader says
 enum Unit : int { kFront, kBack, kReceiversDepth, kBackground, kSurroundingsUnit };
 
-std::vector<gl::Flag> flags(bool thin) { return {{"THIN", thin}}; }
+std::vector<gl::Flag> flags(bool thin, bool split) { return {{"THIN", thin}, {"SPLIT", split}}; }
 
-// Nodes are the first, the middle and the last wavelength (fewer when there are fewer). A wavelength belongs to the node
-// at or after it and lies between that and the one before by its index.
-void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& glass) {
+// Nodes are `most` of the wavelengths, spread evenly from the first to the last. A wavelength belongs to the node at or
+// after it and lies between that and the one before by its index.
+void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& glass, std::size_t most) {
     const auto& all = glass.wavelengths;
     const std::size_t count = std::min<std::size_t>(all.size(), layout::kMostWavelengths);
-    std::vector<std::size_t> nodes{0};
-    if (count > 2) nodes.push_back(count / 2);
-    if (count > 1) nodes.push_back(count - 1);
+    std::vector<std::size_t> nodes;
+    const std::size_t nodeCount = std::min(most, count);
+    for (std::size_t n = 0; n < nodeCount; ++n) nodes.push_back(nodeCount == 1 ? 0 : n * (count - 1) / (nodeCount - 1));
 
     std::vector<glm::vec4> nodeValues, wavelengths;
     std::vector<float> absorption;
@@ -88,7 +89,8 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
     glEnable(GL_SCISSOR_TEST);
     glScissor(in.box.x, in.box.y, in.box.width, in.box.height);
 
-    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled));
+    const bool split = settings.split && !in.glass.thinWalled;
+    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled, split));
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_view", in.view);
@@ -107,7 +109,7 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
         .set("u_receiverSteps", settings.receiverSteps)
         .set("u_diameter", glm::length(in.bounds.max - in.bounds.min))
         .set("u_tint", in.glass.tint);
-    if (!in.glass.thinWalled) setGlass(uniforms, in.glass);
+    if (!in.glass.thinWalled) setGlass(uniforms, in.glass, split ? kSplitNodes : kNodes);
     setKey(uniforms, in.lighting, in.view);
 
     const GLuint textures[] = {in.front.get(), in.back.get(), in.receiversDepth.get(), background_.get(),
@@ -126,8 +128,9 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
 
 void DispersiveRefraction::warmUp() {
     shaders_.program("surroundings");
-    shaders_.program("dispersive_refraction", flags(false));
-    shaders_.program("dispersive_refraction", flags(true));
+    shaders_.program("dispersive_refraction", flags(false, false));
+    shaders_.program("dispersive_refraction", flags(false, true));
+    shaders_.program("dispersive_refraction", flags(true, false));
 }
 
 }  // namespace caustream::render

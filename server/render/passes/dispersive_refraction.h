@@ -41,6 +41,7 @@ class DispersiveRefraction {
         int backSteps = 4;                    // Newton steps to the exit point, 1..16
         int receiverSteps = 4;                // steps of the search in the receivers' picture, 1..32
         int bounces = 2;                      // interfaces met inside after the second, 0..16
+        bool split = false;                   // bounces for up to 8 indices instead of one mean ray: several times the cost
     };
 
     explicit DispersiveRefraction(gl::ShaderLibrary& shaders);
