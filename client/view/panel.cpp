@@ -190,6 +190,9 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
     ImGui::SameLine();
     ImGui::TextWrapped("%s", model.connection.c_str());
 
+    if (model.connected && model.frameRate < 2.0) ImGui::TextDisabled("at rest: nothing changes, nothing is drawn");
+    else if (model.connected) ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
+
     drawScene(model, editor);
     if (section("Picture")) drawPicture(model, controls, editor);
     if (section("Light")) drawLight(model, controls, editor);
