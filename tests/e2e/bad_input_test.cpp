@@ -209,6 +209,34 @@ TEST_F(BadInput, WhatEndsTheConnection) {
     expectAllGoesOn();
 }
 
+// Below the messages: frames that RFC 6455 does not allow, and requests that are no HTTP.
+TEST_F(BadInput, GarbageOnTheWire) {
+    const std::vector<std::string> frames = {
+        std::string("\x81\x05hello", 7),                                   // not masked
+        std::string("\x82\xff\x7f\xff\xff\xff\xff\xff\xff\xff\0\0\0\0", 14),  // announces 2^63 bytes
+        std::string("\x81\xff\0\0\0\0\x40\0\0\0\0\0\0\0", 14),                 // announces 1 GiB
+        std::string("\x89\xfe\x01\0\0\0\0\0", 8) + std::string(256, 'p'),  // a ping with more than 125 bytes
+        std::string("\xf1\x80\0\0\0\0", 6),                              // reserved bits
+        std::string("\x80\x80\0\0\0\0", 6),                              // a continuation of nothing
+        std::string("\x87\x80\0\0\0\0", 6),                              // an opcode there is not
+        std::string("\x88\x81\0\0\0\0x", 7),                             // a close with half a code
+        std::string(5000, '\xff'),
+    };
+    for (const std::string& frame : frames) {
+        RawClient client(server_.port());
+        client.hello();
+        client.bytes(frame);
+        client.bytes("\x81");
+    }
+    const std::vector<std::string> requests = {
+        "x", "GET", "GET / HTTP/9.9\r\n\r\n", std::string(20'000, 'a') + "\r\n\r\n",
+        "GET /" + std::string(30'000, 'b') + " HTTP/1.1\r\n\r\n", std::string(100, '\0'), "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"};
+    for (const std::string& request : requests) {
+        sendRequest(server_.port(), request);
+    }
+    expectAllGoesOn();
+}
+
 TEST_F(BadInput, TheNinthViewerIsTurnedAway) {
     std::vector<std::unique_ptr<RawClient>> more;
     for (int i = 0; i < 6; ++i) {

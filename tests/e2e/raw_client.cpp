@@ -57,6 +57,12 @@ std::string httpGet(int port, std::string_view path, std::string_view extra) {
     return answer;
 }
 
+void sendRequest(int port, std::string_view request) {
+    const int descriptor = connectTo(port);
+    sendAll(descriptor, request);
+    close(descriptor);
+}
+
 RawClient::RawClient(int port) : socket_(connectTo(port)) {
     sendAll(socket_, "GET /ws HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
                          "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"

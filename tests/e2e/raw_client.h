@@ -30,6 +30,9 @@ struct Picture {
 // One HTTP exchange: the answer's head and body. `extra` holds more header lines, each with its \r\n.
 std::string httpGet(int port, std::string_view path, std::string_view extra = "");
 
+// Writes `request` to a fresh connection and closes it without waiting.
+void sendRequest(int port, std::string_view request);
+
 class RawClient {
    public:
     // Connects and upgrades; throws std::runtime_error when the server will not have it.
