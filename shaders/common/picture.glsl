@@ -5,6 +5,7 @@ uniform sampler2D u_background;       // linear radiance
 uniform sampler2D u_receiversDepth;   // layer value
 uniform sampler2D u_surroundings;     // 8 x 8 means of the background
 uniform int u_receiverSteps;
+const int kMarches = 4;
 
 // A plausible, bounded answer for a ray that meets nothing the picture shows: the picture's colours, blurred, with
 // straight ahead in the middle and sideways at the border; behind the eye mirrored.
@@ -34,34 +35,47 @@ vec3 frustumEnd(vec3 pos, vec3 dir, out bool endless) {
     return endless ? vec3(viewToUv(u_view, dir), 0.0) : toImage(pos + length_ * dir);
 }
 
-// Where a ray looks: a place in the picture, or (`astray` 1) out of it, where `fallback` stands in.
+// Where a ray looks: a place in the picture, and how far (`astray` 1: quite) it is out of it, where `fallback` stands in.
 struct Sight {
     vec2 uv;
     float astray;
     vec3 fallback;
 };
 
-// Bracketed secant (Illinois) on behind(), which is linear along a ray over any plane.
+// A few samples find the first crossing, a bracketed secant (Illinois) settles on it: behind() is linear along a ray over
+// any plane.
 Sight look(vec3 pos, vec3 dir) {
     bool endless;
-    vec3 a = toImage(pos), b = frustumEnd(pos, dir, endless);
-    bool inPicture = all(lessThanEqual(abs(a.xy - 0.5), vec2(0.5)));
-    float fa = behind(a), fb = behind(b), side = 0.0;
+    vec3 start = toImage(pos), end = frustumEnd(pos, dir, endless);
+    bool inPicture = all(lessThanEqual(abs(start.xy - 0.5), vec2(0.5)));
+    vec3 a = start, b = start;
+    float fa = behind(start), fb = fa, side = 0.0;
+    for (int i = 1; i <= kMarches; ++i) {
+        vec3 next = mix(start, end, float(i) / float(kMarches));
+        float f = behind(next);
+        bool before = fb < 0.0;
+        a = before ? b : a;
+        fa = before ? fb : fa;
+        b = before ? next : b;
+        fb = before ? f : fb;
+    }
+    // Nothing crossed: the end it is. A ray that leaves just before it would have met something looks at the border; the
+    // further off, the less.
     bool leaves = fb < 0.0 && !endless;
-    vec3 hit = fa >= 0.0 ? a : b;
+    float astray = leaves ? clamp(-1.5 * fb / max(end.z, 1e-20), 0.0, 1.0) : 0.0;
     bool search = fa < 0.0 && fb > 0.0;
+    vec3 hit = b;
     for (int i = 0; i < u_receiverSteps; ++i) {
-        vec3 at = search ? mix(a, b, fa / (fa - fb)) : hit;
-        float f = behind(at);
-        hit = at;
+        hit = search ? mix(a, b, fa / (fa - fb)) : hit;
+        float f = behind(hit);
         bool before = f < 0.0;
-        a = before ? at : a;
-        b = before ? b : at;
+        a = before ? hit : a;
+        b = before ? b : hit;
         fb = before ? (side < 0.0 ? 0.5 * fb : fb) : f;
         fa = before ? f : (side > 0.0 ? 0.5 * fa : fa);
         side = before ? -1.0 : 1.0;
     }
-    return Sight(hit.xy, !inPicture || leaves ? 1.0 : 0.0, surroundings(dir));
+    return Sight(hit.xy, inPicture ? astray : 1.0, surroundings(dir));
 }
 
 // What is seen at `f` of the way from one sight to another.

@@ -21,6 +21,7 @@ uniform vec4 u_nodes[8];               // relative index, absorption (1/m), wave
 uniform vec4 u_wavelengths[64];        // rgb weight; place between its nodes, 0..1
 uniform float u_absorption[64];        // 1/m
 #endif
+const float kOrderlySpread = 0.08;     // radians from one pixel to the next
 layout(location = 0) out vec4 o_radiance;
 
 // The key light in the front surface: a tight lobe of bounded height around the mirror direction.
@@ -34,9 +35,10 @@ vec3 keyHighlight(vec3 pos, vec3 mirrored, vec3 reflectance) {
 #if !THIN
 // Newton on a layer's planes from `t` on, nearest texels: off by no more than the surface bends within half a texel. The
 // normal decides where the ray goes on, so it is filtered; empty texels hold zeros and drop out. False when no exit lies
-// ahead.
-bool walk(sampler2D layer, vec3 pos, vec3 dir, int steps, inout float t, out vec3 normal) {
+// ahead. `change`: what the last step still changed, m.
+bool walk(sampler2D layer, vec3 pos, vec3 dir, int steps, inout float t, out vec3 normal, out float change) {
     bool found = false;
+    change = 0.0;
     vec2 size = vec2(textureSize(layer, 0)), texel;
     for (int i = 0; i < steps; ++i) {
         texel = floor(clamp(viewToUv(u_view, pos + t * dir), u_box.xy, u_box.zw) * size);
@@ -44,7 +46,9 @@ bool walk(sampler2D layer, vec3 pos, vec3 dir, int steps, inout float t, out vec
         float slope = dot(dir, at.xyz);
         bool surface = at.w > 0.0 && slope > 1e-3;
         float next = dot(layerToView(u_view, (texel + 0.5) / size, at.w) - pos, at.xyz) / slope;
-        t = surface ? clamp(next, 0.0, u_diameter) : 0.6 * t;
+        next = surface ? clamp(next, 0.0, u_diameter) : 0.6 * t;
+        change = abs(next - t);
+        t = next;
         found = found || surface;
     }
     normal = textureLod(layer, clamp(viewToUv(u_view, pos + t * dir), u_box.xy, u_box.zw), 0.0).xyz;
@@ -63,10 +67,11 @@ struct Node {
 Node traceNode(float index, vec3 pos, vec3 dir, vec3 normal, float guess) {
     Node node;
     vec3 outside;
+    float change;
     refractDielectric(dir, normal, 1.0 / index, node.inside, node.front);
     node.inside = node.front < 1.0 ? node.inside : dir;
     node.length_ = guess;
-    bool found = walk(u_back, pos, node.inside, u_backSteps, node.length_, node.normal);
+    bool found = walk(u_back, pos, node.inside, u_backSteps, node.length_, node.normal, change);
     node.normal = found ? node.normal : -normal;  // no way through that the layers know: a thin plate's
     node.exit = pos + node.length_ * node.inside;
     bool leaves = refractDielectric(node.inside, -node.normal, index, outside, node.back);
@@ -74,17 +79,24 @@ Node traceNode(float index, vec3 pos, vec3 dir, vec3 normal, float guess) {
     return node;
 }
 
-// The share `kept` of the light, still inside at `at` and on its way along `dir`: bounces until it is out.
+// The share `kept` of the light, still inside at `at` and on its way along `dir`: bounces until it is out. Where
+// neighbouring pixels part ways (a bumpy body) a bounce would only be noise: the mean of the surroundings is right there.
 vec3 follow(vec3 kept, vec3 at, vec3 dir, float index, float absorption) {
-    vec3 color = vec3(0.0);
+    vec2 spread = vec2(length(dFdx(dir)), length(dFdy(dir)));
+    float orderly = 1.0 - smoothstep(kOrderlySpread, 3.0 * kOrderlySpread, max(spread.x, spread.y));
+    vec3 color = kept * (1.0 - orderly) * surroundings(dir);
+    kept *= orderly;
     for (int bounce = 0; bounce < u_bounces; ++bounce) {
-        float toFront = 0.4 * u_diameter, toBack = toFront, R;
+        float toFront = 0.4 * u_diameter, toBack = toFront, changeFront, changeBack, R;
         vec3 frontNormal, backNormal, outside;
-        bool onFront = walk(u_front, at, dir, 3, toFront, frontNormal) && toFront > 1e-3 * u_diameter;
-        bool onBack = walk(u_back, at, dir, 3, toBack, backNormal) && toBack > 1e-3 * u_diameter;
+        bool onFront = walk(u_front, at, dir, 3, toFront, frontNormal, changeFront) && toFront > 1e-3 * u_diameter;
+        bool onBack = walk(u_back, at, dir, 3, toBack, backNormal, changeBack) && toBack > 1e-3 * u_diameter;
         if (!(onFront || onBack)) break;
         bool takesFront = onFront && (!onBack || toFront < toBack);
-        float t = takesFront ? toFront : toBack;
+        float t = takesFront ? toFront : toBack, change = takesFront ? changeFront : changeBack;
+        float settled = 1.0 - smoothstep(0.002, 0.02, change / u_diameter);
+        color += kept * (1.0 - settled) * surroundings(dir);
+        kept *= settled;
         vec3 exitNormal = takesFront ? frontNormal : backNormal;
         at += t * dir;
         kept *= exp(-absorption * t);
