@@ -14,7 +14,7 @@ namespace {
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 // Low enough to look down on the floor, where the caustic is.
-void addBoxCamera(GlbWriter& glb) { glb.addCamera("camera", {0.0, 1.25, 3.1}, {0.0, 0.52, 0.0}, 36.0); }
+void addBoxCamera(GlbWriter& glb) { glb.addCamera("camera", {0.0, 1.35, 2.95}, {0.0, 0.46, 0.0}, 36.0); }
 
 void addRoom(GlbWriter& glb) {
     addCornellBox(glb);
@@ -77,7 +77,7 @@ std::vector<std::uint8_t> makeGem() {
     place = glm::rotate(place, static_cast<float>(radians(-12.0)), {1.0f, 0.0f, 0.0f});
     transform(gem, glm::scale(place, glm::vec3(0.85f)));
     glb.addMesh("gem", gem, glass);
-    glb.addLight(spotLight("key", 60.0, 17.0, 20.0), {0.5, 1.92, -0.6}, {0.0, 0.6, -0.05});
+    glb.addLight(spotLight("key", 60.0, 14.5, 17.0), {0.5, 1.92, -0.6}, {0.04, 0.62, -0.08});
     return glb.finish();
 }
 

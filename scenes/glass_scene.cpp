@@ -59,9 +59,9 @@ std::vector<std::uint8_t> makeGlass() {
     glb.addMesh("glass", glass, amber);
     glb.addMesh("table", quad({-0.4f, 0, 0.3f}, {0.4f, 0, 0.3f}, {0.4f, 0, -0.3f}, {-0.4f, 0, -0.3f}), table);
     glb.addMesh("wall", quad({-1.2f, -0.6f, -0.45f}, {1.2f, -0.6f, -0.45f}, {1.2f, 1, -0.45f}, {-1.2f, 1, -0.45f}), wall);
-    glb.addLight(spotLight("key", 8.0, 11.0, 17.0), {0.32, 0.42, -0.36}, {-0.02, 0.05, 0.02});
-    glb.addCamera("camera", {0.02, 0.30, 0.50}, {-0.02, 0.045, 0.0}, 34.0);
-    glb.setSceneExtras({{"environment", {0.16, 0.15, 0.14}}});
+    glb.addLight(spotLight("key", 8.0, 11.0, 17.0), {0.24, 0.46, -0.33}, {-0.03, 0.05, 0.03});
+    glb.addCamera("camera", {0.0, 0.30, 0.50}, {-0.035, 0.03, 0.03}, 34.0);
+    glb.setSceneExtras({{"environment", {0.14, 0.13, 0.12}}, {"exposure_bias_ev", 0.6}});
     return glb.finish();
 }
 

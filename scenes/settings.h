@@ -16,7 +16,7 @@ std::vector<std::uint8_t> makeBunny(const std::string& objPath);
 // A full glass on a wooden table.
 std::vector<std::uint8_t> makeGlass();
 
-// A flint prism that throws a rainbow over the floor and up a screen.
+// A flint prism in a dark room that throws a wide rainbow on a white floor.
 std::vector<std::uint8_t> makePrism();
 
 }  // namespace caustream::scenes

@@ -325,7 +325,7 @@ Frame Pipeline::run(const Request& request) {
     lighting.hasMap = maps.hasMap, lighting.mapView = maps.mapView, lighting.outerView = maps.outerView;
     lighting.map = maps.map.get(), lighting.outerMap = maps.outerMap.get();
     const float unit = radianceUnit(lighting);
-    const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey;
+    const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey * std::exp2(scene.exposureBiasEv);
     frame.stats.exposureEv = std::log2(scale / unit);
     const bool picture = request.target != Target::Spectral;
     if (picture) {

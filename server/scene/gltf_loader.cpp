@@ -314,6 +314,11 @@ Status Loader::readSceneExtras() {
             return fail("the scene's environment must be [r, g, b], none negative");
         scene_.environmentColor = glm::vec3(color[0], color[1], color[2]);
     }
+    if (const tinygltf::Value* value = member(*own, "exposure_bias_ev")) {
+        const double stops = numberOr(value, INFINITY);
+        if (!(std::abs(stops) <= 16.0)) return fail("the scene's exposure_bias_ev must be within -16 to 16");
+        scene_.exposureBiasEv = static_cast<float>(stops);
+    }
     if (const tinygltf::Value* value = member(*own, "outside_index")) {
         const double index = numberOr(value, 0.0);
         if (!(index >= 1.0 && index <= 3.0)) return fail("the scene's outside_index must be within 1 to 3");

@@ -93,6 +93,7 @@ struct Scene {
     std::vector<Light> lights;        // never empty after loading: one is placed if the file has none
     std::vector<Camera> cameras;      // likewise; cameras[0] is the one to start with
     glm::vec3 environmentColor{0.05f};// linear, radiance relative to a white receiver under the key light
+    float exposureBiasEv = 0.0f;      // stops added to the automatic exposure: a rainbow is dimmer than its beam
     double outsideIndex = 1.0;        // refractive index around the casters
     std::vector<std::string> warnings;// a sentence each, for the person who loads the file
 };
