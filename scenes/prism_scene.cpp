@@ -47,7 +47,7 @@ std::vector<std::uint8_t> makePrism() {
 
     const glm::dvec3 entry = centre + inradius * level(entryNormal);
     glb.addLight(spotLight("key", 300.0, 9.0, 9.5), entry - kBeamM * level(in), entry);
-    glb.addCamera("camera", {-0.28, 1.0, 1.42}, {-0.08, 0.33, 0.0}, 38.0);
+    glb.addCamera("camera", {-0.30, 1.0, 1.45}, {-0.16, 0.34, 0.0}, 38.0);
     glb.setSceneExtras({{"environment", {0.013, 0.013, 0.015}}, {"exposure_bias_ev", 2.5}});
     return glb.finish();
 }
