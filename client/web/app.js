@@ -138,6 +138,7 @@ function moveLight(dx, dy) {
     if (!light || !session.shown.camera?.eye) return;
     const pose = dragLight(light, session.shown.camera, session.lightPath(panel.lightName), dx, dy);
     session.pose({ lights: { [panel.lightName]: pose } });
+    byId('hint').hidden = true;    // whoever has found out need not be told
 }
 
 function setLightMode(on) {

@@ -3,7 +3,7 @@ import { chromium } from 'playwright-core';
 
 // No frame for this long: the picture has settled. A composite picture ends with a still, which comes a while after.
 const kQuietMs = 700, kQuietAfterStillMs = 250;
-const kSettleMs = 20_000;
+const kSettleMs = 60_000;    // not a wish for speed: only a sign that nothing will come
 const kGridWidth = 120;
 
 export async function openViewer(url) {
