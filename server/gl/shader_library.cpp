@@ -43,7 +43,7 @@ std::string keyOf(std::string_view stem, const std::vector<Flag>& flags) {
 }
 
 std::filesystem::file_time_type newestBelow(const std::filesystem::path& directory) {
-    std::filesystem::file_time_type newest{};
+    auto newest = std::filesystem::file_time_type::min();   // not {}: the clock's epoch may lie ahead of every file
     for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
         if (entry.is_regular_file()) newest = std::max(newest, entry.last_write_time());
     }
@@ -80,8 +80,15 @@ std::string ShaderLibrary::read(const std::string& path) const {
 }
 
 std::string ShaderLibrary::expand(const std::string& path, std::vector<std::string>& files) const {
+    std::vector<std::string> open;
+    return expand(path, files, open);
+}
+
+// `open`: the files that led here, each by an #include that is not finished.
+std::string ShaderLibrary::expand(const std::string& path, std::vector<std::string>& files, std::vector<std::string>& open) const {
     const std::size_t source = files.size();
     files.push_back(path);
+    open.push_back(path);
     std::istringstream in(read(path));
     std::string out = "#line 1 " + std::to_string(source) + "\n", line;
     for (int number = 1; std::getline(in, line); ++number) {
@@ -93,10 +100,14 @@ std::string ShaderLibrary::expand(const std::string& path, std::vector<std::stri
         }
         const std::string included = match[1].str();
         if (!exists(included)) throw ShaderError(path + ":" + std::to_string(number) + ": no shader " + included);
-        // Once by default: a file already in the list is not pasted again, which also ends a cycle.
-        if (std::find(files.begin(), files.end(), included) == files.end()) out += expand(included, files);
+        if (std::find(open.begin(), open.end(), included) != open.end()) {
+            throw ShaderError(path + ":" + std::to_string(number) + ": " + included + " includes itself through this line");
+        }
+        // Once by default: a file already in the list is not pasted again.
+        if (std::find(files.begin(), files.end(), included) == files.end()) out += expand(included, files, open);
         out += "#line " + std::to_string(number + 1) + " " + std::to_string(source) + "\n";
     }
+    open.pop_back();
     return out;
 }
 

@@ -39,6 +39,7 @@ class ShaderLibrary {
 
    private:
     std::string read(const std::string& path) const;
+    std::string expand(const std::string& path, std::vector<std::string>& files, std::vector<std::string>& open) const;
     bool exists(const std::string& path) const;
     Shader compile(GLenum stage, const std::string& path, const std::vector<Flag>& flags) const;
 
