@@ -1,0 +1,88 @@
+// map_resolve: no light is lost or made between the fixed-point pyramid and the concentration.
+#include "render/passes/map_resolve.h"
+#include "tests/gpu/camera_fixture.h"
+#include "tests/gpu/light_buffers.h"
+
+namespace caustream::tests {
+namespace {
+
+using render::View;
+
+class MapResolveTest : public CameraPass {
+   protected:
+    struct Resolved {
+        std::vector<glm::vec4> concentration;
+        GLuint booked;
+    };
+    Resolved resolve(const std::vector<GLuint>& words, const View& view, int levels, double fluxPerFixed = 1.0) {
+        const gl::Buffer map(words.size() * sizeof(GLuint), words.data(), GL_DYNAMIC_STORAGE_BIT, "map");
+        const gl::Buffer ledger = makeLedger();
+        gl::Texture concentration;
+        render::MapResolve(shaders_).run({.map = map, .view = view, .size = kSize, .levels = levels, .firstTexel = 0,
+                                          .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = fluxPerFixed, .ledgerPerFixed = 1.0},
+                                         concentration, ledger);
+        glMemoryBarrier(GL_ALL_BARRIER_BITS);   // map and ledger -> read-back
+        return {readTexture(concentration), ledgerRows(ledger)[layout::kLedgerDeposited]};
+    }
+
+    static std::size_t firstOf(int level) {
+        std::size_t first = 0;
+        for (int i = 0; i < level; ++i) first += std::size_t(kSize >> i) * std::size_t(kSize >> i);
+        return first;
+    }
+    static std::vector<GLuint> emptyMap(int levels) { return std::vector<GLuint>(3 * firstOf(levels)); }
+
+    // Parallel, one texel 1 m^2: concentration is flux per texel.
+    static View unitView() { return parallelView({0, 0, 3}, {0, 0, 0}, kSize / 2.0f); }
+};
+
+TEST_F(MapResolveTest, EveryLevelKeepsItsSumBordersIncluded) {
+    for (int level = 0; level < layout::kMostLevels; ++level) {
+        const int side = kSize >> level;
+        for (const glm::ivec2 texel : {glm::ivec2(0, 0), glm::ivec2(side - 1, 0), glm::ivec2(0, side / 2), glm::ivec2(side - 1, side - 1),
+                                       glm::ivec2(side / 2, side / 2), glm::ivec2(1, 1)}) {
+            std::vector<GLuint> words = emptyMap(layout::kMostLevels);
+            const std::size_t at = 3 * (firstOf(level) + std::size_t(texel.y * side + texel.x));
+            words[at] = 1u << 20, words[at + 1] = 1u << 21, words[at + 2] = 1u << 22;
+            const Resolved resolved = resolve(words, unitView(), layout::kMostLevels);
+            glm::dvec3 sum(0.0);
+            for (const glm::vec4& c : resolved.concentration) sum += glm::dvec3(c);
+            // The weights are quarters: nothing rounds below 2^22.
+            EXPECT_EQ(sum, glm::dvec3(1u << 20, 1u << 21, 1u << 22)) << "level " << level << " texel " << texel.x << " " << texel.y;
+            EXPECT_NEAR(resolved.booked, 1u << 21, layout::kLedgerBanks);   // half a unit per group
+        }
+    }
+}
+
+TEST_F(MapResolveTest, CoarseTexelSpreadsAroundItsPlace) {
+    std::vector<GLuint> words = emptyMap(3);
+    words[3 * (firstOf(2) + 5 * (kSize >> 2) + 9) + 1] = 1u << 20;
+    const Resolved resolved = resolve(words, unitView(), 3);
+    glm::dvec2 centroid(0.0);
+    for (int i = 0; i < kSize * kSize; ++i) {
+        centroid += glm::dvec2(i % kSize + 0.5, i / kSize + 0.5) * double(resolved.concentration[std::size_t(i)].y) / double(1u << 20);
+    }
+    EXPECT_NEAR(centroid.x, 9.5 * 4.0, 1e-9);
+    EXPECT_NEAR(centroid.y, 5.5 * 4.0, 1e-9);
+}
+
+TEST_F(MapResolveTest, DirectLightHasConcentrationOne) {
+    const double fluxPerFixed = 1e-12;
+    const View wide = lookingAt({0, 0, 3}, {0, 0, 0}, 100.0f);   // texels of very different solid angle
+    for (const View& view : {unitView(), wide}) {
+        std::vector<GLuint> words(3 * kSize * kSize);
+        const double unit = view.perspective ? fluxPerFixed : 1e-9;
+        for (int i = 0; i < kSize * kSize; ++i) {
+            const glm::dvec2 xy = (2.0 * (glm::dvec2(i % kSize, i / kSize) + 0.5) / double(kSize) - 1.0) * glm::dvec2(view.halfExtent);
+            const double r2 = 1.0 + glm::dot(xy, xy), area = 4.0 * double(view.halfExtent.x) * double(view.halfExtent.y) / (kSize * kSize);
+            const double extent = view.perspective ? area / (r2 * std::sqrt(r2)) : area;
+            for (int c = 0; c < 3; ++c) words[std::size_t(3 * i + c)] = GLuint(std::lround(extent / unit));
+        }
+        for (const glm::vec4& c : resolve(words, view, 1, unit).concentration) {
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], 1.0f, 2e-6f);   // float rounding of extents and products
+        }
+    }
+}
+
+}  // namespace
+}  // namespace caustream::tests
