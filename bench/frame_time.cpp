@@ -85,9 +85,10 @@ void print(const char* what, const Measured& m) {
 
 double calibrationMs() {
     const auto start = std::chrono::steady_clock::now();
-    double x = 1.0;
+    const volatile double seed = 1.0;   // volatile at both ends, or the loop is moved out of the clock
+    double x = seed;
     for (int i = 0; i < 50'000'000; ++i) x = x * 0.999999999 + 1e-9;
-    const volatile double kept = x;   // or the loop is not run at all
+    const volatile double kept = x;
     static_cast<void>(kept);
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }

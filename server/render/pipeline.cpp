@@ -261,12 +261,11 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     const auto report = [&](int done) {
         if (progress) progress(done, 4);
     };
-    for (const int cookie : {0, 1}) {
-        impl_->shaders.program("photon_list", {{"COOKIE", cookie}});
-        for (const int bands : {0, 1}) {
-            for (const int retry : {0, 1}) {
-                impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", cookie}, {"RETRY", retry}});
-            }
+    // Those for a light with a cookie are compiled when one comes: few scenes have any.
+    impl_->shaders.program("photon_list", {{"COOKIE", 0}});
+    for (const int bands : {0, 1}) {
+        for (const int retry : {0, 1}) {
+            impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", 0}, {"RETRY", retry}});
         }
     }
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);

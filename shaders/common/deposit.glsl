@@ -45,17 +45,13 @@ void deposit(Place place, int k, float flux) {
     vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
     for (int i = 0; i < 4; ++i) atomicAdd(map[cornerOf(place, i) * u_bands + int(u_glass[k].w)], uint(share[i] + 0.5));
 }
-#else
-// Neighbouring wavelengths mostly land in the same texels: their XYZ is gathered here and written once.
-struct Pending {
-    Place place;
-    vec3 corner0, corner1, corner2, corner3;
-};
 
-Pending nothingPending() {
-    return Pending(Place(-1, 0, vec2(0.0)), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+void depositAll(vec3 landed[kMostWavelengths], ivec2 size, int firstTexel, float share) {
+    for (int k = 0; k < u_wavelengths; ++k) {
+        if (landed[k].z * share > 0.0) deposit(placeAt(landed[k].xy, size, firstTexel), k, landed[k].z * share);
+    }
 }
-
+#else
 void addTo(int texel, vec3 xyz) {
     uvec3 amount = uvec3(xyz + 0.5);
     atomicAdd(map[texel * 3], amount.x);
@@ -63,23 +59,33 @@ void addTo(int texel, vec3 xyz) {
     atomicAdd(map[texel * 3 + 2], amount.z);
 }
 
-void flush(inout Pending pending) {
-    if (pending.place.texel < 0) return;
-    addTo(cornerOf(pending.place, 0), pending.corner0);
-    addTo(cornerOf(pending.place, 1), pending.corner1);
-    addTo(cornerOf(pending.place, 2), pending.corner2);
-    addTo(cornerOf(pending.place, 3), pending.corner3);
-    pending = nothingPending();
+void deposit(Place place, int k, float flux) {
+    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
+    for (int i = 0; i < 4; ++i) addTo(cornerOf(place, i), share[i] * u_xyz[k].xyz);
 }
 
-void deposit(inout Pending pending, Place place, int k, float flux) {
-    if (place.texel != pending.place.texel) flush(pending);
-    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
-    vec3 xyz = u_xyz[k].xyz;
-    pending.place = place;
-    pending.corner0 += share.x * xyz;
-    pending.corner1 += share.y * xyz;
-    pending.corner2 += share.z * xyz;
-    pending.corner3 += share.w * xyz;
+// Neighbouring wavelengths mostly land in the same texels: a run of them is gathered and written once.
+void depositAll(vec3 landed[kMostWavelengths], ivec2 size, int firstTexel, float share) {
+    int k = share > 0.0 ? 0 : u_wavelengths;
+    while (k < u_wavelengths) {
+        Place place = placeAt(landed[k].xy, size, firstTexel);
+        vec3 corner0 = vec3(0.0), corner1 = vec3(0.0), corner2 = vec3(0.0), corner3 = vec3(0.0);
+        int run = place.texel;
+        while (run == place.texel) {
+            vec4 part = shares(place.f) * (landed[k].z * share * u_fixedPerFlux);
+            vec3 xyz = u_xyz[k].xyz;
+            corner0 += part.x * xyz;
+            corner1 += part.y * xyz;
+            corner2 += part.z * xyz;
+            corner3 += part.w * xyz;
+            ++k;
+            if (k >= u_wavelengths) break;
+            place = placeAt(landed[k].xy, size, firstTexel);
+        }
+        addTo(run, corner0);
+        addTo(run + 1, corner1);
+        addTo(run + size.x, corner2);
+        addTo(run + size.x + 1, corner3);
+    }
 }
 #endif

@@ -29,26 +29,17 @@ struct Meeting {
     float slope;      // 1/m; 0: no neighbour yet
 };
 
-// Follows the surface that a neighbouring ray met: two or three secant steps from its meeting point. False when they do
-// not settle on it; the ray must then be searched from its beginning.
+// Follows the surface that a neighbouring ray met: one secant step from its meeting point, exact on a plane. False when
+// it does not settle on it; the ray must then be searched from its beginning.
 bool followReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, inout Meeting near, out vec2 uv) {
-    uv = vec2(0.5);
-    if (near.slope <= 0.0) return false;
     float a = near.t;
     float fa = behindAt(view, layer, origin + a * direction, uv);
-    float b = a - fa / near.slope;
+    float b = a - fa / max(near.slope, 1e-20);
     float fb = behindAt(view, layer, origin + b * direction, uv);
-    if (abs(fb) > 1e-4 && fa != fb) {
-        float c = b - fb * (b - a) / (fb - fa);
-        a = b;
-        b = c;
-        fa = fb;
-        fb = behindAt(view, layer, origin + b * direction, uv);
-    }
     bool inside = all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
-    if (!inside || b <= 0.0 || !(abs(fb) <= 0.25 * kResidual)) return false;
-    near.t = b;
-    return true;
+    bool met = near.slope > 0.0 && inside && b > 0.0 && abs(fb) <= 0.25 * kResidual;
+    if (met) near.t = b;
+    return met;
 }
 
 // `origin` and unit `direction` in the view's space, at most `reach` away; `uv` is where it is met.

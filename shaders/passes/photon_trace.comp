@@ -45,7 +45,7 @@ uniform float u_reach;                         // m: farther than any receiver
 #include "common/deposit.glsl"
 
 const float kLevelBias = 0.6;   // photons a texel apart show their lattice in texels of just that width
-const int kFollowSteps = 2;     // Newton steps from a neighbour's exit point
+const int kFollowSteps = 1;     // Newton steps from where the neighbouring wavelengths' ways point to
 
 // A photon where it meets the caster, in the back view's space.
 struct Entry {
@@ -154,16 +154,8 @@ void main() {
             coarseShare = 0.0;
         }
         if (found == kHit) {
-#if BANDS
             deposit(fine, k, flux * (1.0 - coarseShare));
             if (coarseShare > 0.0) deposit(coarse, k, flux * coarseShare);
-#else
-            Pending pending = nothingPending();
-            deposit(pending, fine, k, flux * (1.0 - coarseShare));
-            flush(pending);
-            if (coarseShare > 0.0) deposit(pending, coarse, k, flux * coarseShare);
-            flush(pending);
-#endif
         }
         rejected += found == kRejected ? weight * flux : 0.0;
         left += found == kLeftView ? weight * flux : 0.0;
@@ -230,45 +222,40 @@ void main() {
     vec2 at;
     Tally tally;
     Meeting meeting = Meeting(0.0, 0.0);
-    if (passThrough(entry, u_wavelengths - 1, u_backSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves) {
+    int longest = passThrough(entry, u_wavelengths - 1, u_backSteps, way, exitNormal, origin, ray, flux, tally);
+    if (longest == kLeaves) {
         if (findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) != kHit) meeting.slope = 0.0;
         if (u_levels > 1 && meeting.slope > 0.0) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
     }
     Level pyramid = levelOf(level, textureSize(u_receivers, 0));
 
-    // All wavelengths from there
-#if !BANDS
-    Pending fine = nothingPending(), coarse = nothingPending();
-#endif
-    float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0;
+    // All wavelengths from there: where each lands, and with how much. Its way is guessed from the two before it.
+    vec3 landed[kMostWavelengths];           // uv in the inner map, flux; no flux: nowhere
+    float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0, lastWay = way;
     uvec2 unsettled = uvec2(0u);
     for (int k = u_wavelengths - 1; k >= 0; --k) {
         float weight = u_glass[k].z;
         flux = entry.flux;
         onCasters += weight * flux;
+        float guess = way + (way - lastWay);
+        lastWay = way;
+        way = guess;
         int passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
         bool met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
-        if (!met && passed != kTotal) {
-            if (k < 32) unsettled.x |= 1u << k;
-            else unsettled.y |= 1u << (k - 32);
-            continue;
+        landed[k] = vec3(at, met ? flux : 0.0);
+        // One step may reflect a ray that would leave: it is searched again, unless the longest is reflected as well.
+        if (met || (passed == kTotal && longest == kTotal)) {
+            absorbed += weight * tally.absorbed;
+            reflected += weight * tally.reflected;
+            total += weight * tally.total;
+        } else if (k < 32) {
+            unsettled.x |= 1u << k;
+        } else {
+            unsettled.y |= 1u << (k - 32);
         }
-        absorbed += weight * tally.absorbed;
-        reflected += weight * tally.reflected;
-        total += weight * tally.total;
-        if (!met) continue;
-#if BANDS
-        deposit(placeAt(at, pyramid.fineSize, pyramid.fineFirst), k, flux * (1.0 - pyramid.coarseShare));
-        if (pyramid.coarseShare > 0.0) deposit(placeAt(at, pyramid.coarseSize, pyramid.coarseFirst), k, flux * pyramid.coarseShare);
-#else
-        deposit(fine, placeAt(at, pyramid.fineSize, pyramid.fineFirst), k, flux * (1.0 - pyramid.coarseShare));
-        if (pyramid.coarseShare > 0.0) deposit(coarse, placeAt(at, pyramid.coarseSize, pyramid.coarseFirst), k, flux * pyramid.coarseShare);
-#endif
     }
-#if !BANDS
-    flush(fine);
-    flush(coarse);
-#endif
+    depositAll(landed, pyramid.fineSize, pyramid.fineFirst, 1.0 - pyramid.coarseShare);
+    depositAll(landed, pyramid.coarseSize, pyramid.coarseFirst, pyramid.coarseShare);
     if ((unsettled.x | unsettled.y) != 0u) {
         uint place = atomicAdd(retryCount, 1u);
         atomicMax(retryGroups[0], place / uint(kGroupSize) + 1u);
