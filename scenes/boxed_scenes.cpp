@@ -11,10 +11,14 @@ namespace caustream::scenes {
 
 namespace {
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180.0;
+}
 
 // Low enough to look down on the floor, where the caustic is.
-void addBoxCamera(GlbWriter& glb) { glb.addCamera("camera", {0.0, 1.35, 2.95}, {0.0, 0.46, 0.0}, 36.0); }
+void addBoxCamera(GlbWriter& glb) {
+    glb.addCamera("camera", {0.0, 1.35, 2.95}, {0.0, 0.46, 0.0}, 36.0);
+}
 
 void addRoom(GlbWriter& glb) {
     addCornellBox(glb);
@@ -28,14 +32,14 @@ glm::dvec4 facet(double up, double slopeDeg, double azimuthDeg, double offset) {
     return {std::sin(t) * std::cos(p), up * std::cos(t), std::sin(t) * std::sin(p), offset};
 }
 
-// 24 faces, as the thesis's: a table, 8 stars, 8 mains, 6 pavilion facets and a culet. About one across. The pavilion is
-// shallow enough that light from above leaves through it instead of being thrown back.
+// 24 faces, as the thesis's: a table, 8 stars, 8 mains, 6 pavilion facets and a culet. About one across. The pavilion
+// is shallow enough that light from above leaves through it instead of being thrown back.
 std::vector<glm::dvec4> gemPlanes() {
     constexpr double kStar = 24, kMain = 40, kPavilion = 35, kGirdle = 0.5, kTableHeight = 0.20, kCuletDepth = 0.31;
     std::vector<glm::dvec4> planes{facet(1, 0, 0, kTableHeight)};
     for (int i = 0; i < 8; ++i)
-        planes.push_back(facet(1, kStar, 45 * i + 22.5,
-                               std::sin(radians(kStar)) * 0.27 + std::cos(radians(kStar)) * kTableHeight));
+        planes.push_back(
+            facet(1, kStar, 45 * i + 22.5, std::sin(radians(kStar)) * 0.27 + std::cos(radians(kStar)) * kTableHeight));
     for (int i = 0; i < 8; ++i) planes.push_back(facet(1, kMain, 45 * i, std::sin(radians(kMain)) * kGirdle));
     for (int i = 0; i < 6; ++i)
         planes.push_back(facet(-1, kPavilion, 60 * i + 10, std::sin(radians(kPavilion)) * kGirdle));

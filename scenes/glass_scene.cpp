@@ -1,6 +1,6 @@
 // Blanchette 2012, section 6: a glass on a wooden table; ours is full, and one body of glass and drink.
-#include "scenes/settings.h"
 #include "scenes/glb_writer.h"
+#include "scenes/settings.h"
 #include "scenes/wood.h"
 
 namespace caustream::scenes {
@@ -58,7 +58,8 @@ std::vector<std::uint8_t> makeGlass() {
     for (glm::vec3& p : glass.positions) p.y += 0.0003f;  // not in the table's plane
     glb.addMesh("glass", glass, amber);
     glb.addMesh("table", quad({-0.4f, 0, 0.3f}, {0.4f, 0, 0.3f}, {0.4f, 0, -0.3f}, {-0.4f, 0, -0.3f}), table);
-    glb.addMesh("wall", quad({-1.2f, -0.6f, -0.45f}, {1.2f, -0.6f, -0.45f}, {1.2f, 1, -0.45f}, {-1.2f, 1, -0.45f}), wall);
+    glb.addMesh("wall", quad({-1.2f, -0.6f, -0.45f}, {1.2f, -0.6f, -0.45f}, {1.2f, 1, -0.45f}, {-1.2f, 1, -0.45f}),
+                wall);
     glb.addLight(spotLight("key", 8.0, 11.0, 17.0), {0.24, 0.46, -0.33}, {-0.03, 0.05, 0.03});
     glb.addCamera("camera", {0.0, 0.30, 0.50}, {-0.035, 0.03, 0.03}, 34.0);
     glb.setSceneExtras({{"environment", {0.14, 0.13, 0.12}}, {"exposure_bias_ev", 0.6}});

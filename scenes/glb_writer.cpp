@@ -17,9 +17,13 @@ namespace {
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180.0;
+}
 
-json vector3(const glm::dvec3& v) { return json::array({v.x, v.y, v.z}); }
+json vector3(const glm::dvec3& v) {
+    return json::array({v.x, v.y, v.z});
+}
 
 // A node at `position` whose -Z looks at `target`.
 json lookingAt(const glm::dvec3& position, const glm::dvec3& target) {
@@ -84,9 +88,8 @@ void GlbWriter::addLight(json light, const glm::dvec3& position, const glm::dvec
 }
 
 void GlbWriter::addCamera(const std::string& name, const glm::dvec3& eye, const glm::dvec3& target, double fovYDeg) {
-    json_["cameras"].push_back({{"name", name},
-                                {"type", "perspective"},
-                                {"perspective", {{"yfov", radians(fovYDeg)}, {"znear", 0.01}}}});
+    json_["cameras"].push_back(
+        {{"name", name}, {"type", "perspective"}, {"perspective", {{"yfov", radians(fovYDeg)}, {"znear", 0.01}}}});
     json node = lookingAt(eye, target);
     node["name"] = name;
     node["camera"] = json_["cameras"].size() - 1;
@@ -95,7 +98,9 @@ void GlbWriter::addCamera(const std::string& name, const glm::dvec3& eye, const 
     addNode(std::move(node));
 }
 
-void GlbWriter::setSceneExtras(json extras) { json_["scenes"][0]["extras"]["caustream"] = std::move(extras); }
+void GlbWriter::setSceneExtras(json extras) {
+    json_["scenes"][0]["extras"]["caustream"] = std::move(extras);
+}
 
 std::vector<std::uint8_t> GlbWriter::finish() const {
     json root = json_;
@@ -154,9 +159,10 @@ json glassMaterial(const std::string& name, double ior, json extras) {
 }
 
 json matteMaterial(const std::string& name, const glm::vec3& color) {
-    return {{"name", name},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor", {color.r, color.g, color.b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
+    return {
+        {"name", name},
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {color.r, color.g, color.b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
 }
 
 json spotLight(const std::string& name, double candela, double innerDeg, double outerDeg) {

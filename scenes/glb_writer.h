@@ -12,7 +12,7 @@
 namespace caustream::scenes {
 
 class GlbWriter {
-   public:
+ public:
     GlbWriter();
 
     // `material` is glTF's JSON for a material; `image` a PNG file. Both return an index.
@@ -31,7 +31,7 @@ class GlbWriter {
     // The finished file. The writer may be added to and asked again.
     std::vector<std::uint8_t> finish() const;
 
-   private:
+ private:
     int addView(const void* data, std::size_t bytes);
     int addAccessor(const void* data, std::size_t count, std::size_t stride, int componentType, const char* type);
     void addNode(nlohmann::json node);

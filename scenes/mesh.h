@@ -31,8 +31,8 @@ Mesh torus(double majorRadius, double minorRadius, int around, int across);
 
 // (radius, height) points of a smooth curve.
 using Profile = std::vector<glm::dvec2>;
-// Turns curves around the y axis, `around` steps: normals are smooth along each curve, with an edge where one ends and the
-// next begins. From the axis at the bottom, outside, to the axis at the top: closed and outside out.
+// Turns curves around the y axis, `around` steps: normals are smooth along each curve, with an edge where one ends and
+// the next begins. From the axis at the bottom, outside, to the axis at the top: closed and outside out.
 Mesh lathe(const std::vector<Profile>& curves, int around);
 
 // Corners counter-clockwise seen from the side the normal points to; uv 0..1 with v down.

@@ -18,8 +18,8 @@ std::vector<glm::dvec3> corners(std::span<const glm::dvec4> planes, std::size_t 
     for (std::size_t i = 0; i < planes.size(); ++i)
         for (std::size_t j = i + 1; j < planes.size(); ++j) {
             if (i == face || j == face) continue;
-            const glm::dmat3 rows = glm::transpose(
-                glm::dmat3(glm::dvec3(planes[face]), glm::dvec3(planes[i]), glm::dvec3(planes[j])));
+            const glm::dmat3 rows =
+                glm::transpose(glm::dmat3(glm::dvec3(planes[face]), glm::dvec3(planes[i]), glm::dvec3(planes[j])));
             if (std::abs(glm::determinant(rows)) < 1e-9) continue;
             const glm::dvec3 point = glm::inverse(rows) * glm::dvec3(planes[face].w, planes[i].w, planes[j].w);
             const bool inside = std::all_of(planes.begin(), planes.end(), [&](const glm::dvec4& p) {

@@ -46,16 +46,18 @@ void transform(Mesh& mesh, const glm::mat4& matrix) {
 
 Mesh icosphere(int levels, const glm::dvec3& centre, double radius) {
     const double phi = std::numbers::phi;
-    std::vector<glm::dvec3> points{{-1, phi, 0}, {1, phi, 0}, {-1, -phi, 0}, {1, -phi, 0}, {0, -1, phi}, {0, 1, phi},
-                                   {0, -1, -phi}, {0, 1, -phi}, {phi, 0, -1}, {phi, 0, 1}, {-phi, 0, -1}, {-phi, 0, 1}};
-    std::vector<std::uint32_t> faces{0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6,
-                                     7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10,
-                                     8, 6, 7, 9, 8, 1};
+    std::vector<glm::dvec3> points{{-1, phi, 0}, {1, phi, 0}, {-1, -phi, 0}, {1, -phi, 0},
+                                   {0, -1, phi}, {0, 1, phi}, {0, -1, -phi}, {0, 1, -phi},
+                                   {phi, 0, -1}, {phi, 0, 1}, {-phi, 0, -1}, {-phi, 0, 1}};
+    std::vector<std::uint32_t> faces{0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                                     4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                                     6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
     for (glm::dvec3& p : points) p = glm::normalize(p);
     for (int level = 0; level < levels; ++level) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
         const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-            const auto [entry, isNew] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
+            const auto [entry, isNew] =
+                middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
             if (isNew) points.push_back(glm::normalize(points[a] + points[b]));
             return entry->second;
         };
@@ -85,7 +87,9 @@ Mesh torus(double majorRadius, double minorRadius, int around, int across) {
             const glm::dvec3 normal = std::cos(v) * out + glm::dvec3(0.0, std::sin(v), 0.0);
             mesh.positions.push_back(glm::vec3(majorRadius * out + minorRadius * normal));
             mesh.normals.push_back(glm::vec3(normal));
-            const auto at = [&](int a, int b) { return static_cast<std::uint32_t>((a % around) * across + b % across); };
+            const auto at = [&](int a, int b) {
+                return static_cast<std::uint32_t>((a % around) * across + b % across);
+            };
             mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1),  //
                                                      at(i, j), at(i + 1, j + 1), at(i, j + 1)});
         }
@@ -127,9 +131,7 @@ Mesh quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm:
 }
 
 Mesh box(const glm::vec3& lo, const glm::vec3& hi) {
-    const auto at = [&](int x, int y, int z) {
-        return glm::vec3(x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z);
-    };
+    const auto at = [&](int x, int y, int z) { return glm::vec3(x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z); };
     Mesh mesh;
     append(mesh, quad(at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)));
     append(mesh, quad(at(1, 0, 0), at(0, 0, 0), at(0, 1, 0), at(1, 1, 0)));

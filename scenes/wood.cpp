@@ -1,11 +1,11 @@
 #include "scenes/wood.h"
 
+#include <png.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
-#include <png.h>
 #include <stdexcept>
 #include <string>
 

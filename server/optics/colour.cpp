@@ -15,14 +15,15 @@ constexpr double kLineDNm = 587.56;  // helium d: where n_d is measured
 
 // Integral of the matching functions times a power, from the start of the band, every nm.
 class CumulativeXyz {
-   public:
+ public:
     explicit CumulativeXyz(const Spectrum& spectrum) {
         sum_[0] = glm::dvec3(0.0);
         for (int i = 0; i < kCount; ++i) {
             // Midpoint and ends (Simpson 1743): exact for the piecewise linear tables.
             const double nm = kBandMinNm + i;
-            sum_[i + 1] = sum_[i] + (density(spectrum, nm) + 4.0 * density(spectrum, nm + 0.5) +
-                                     density(spectrum, nm + 1.0)) / 6.0;
+            sum_[i + 1] =
+                sum_[i] +
+                (density(spectrum, nm) + 4.0 * density(spectrum, nm + 0.5) + density(spectrum, nm + 1.0)) / 6.0;
         }
     }
 
@@ -33,12 +34,10 @@ class CumulativeXyz {
     }
     glm::dvec3 total() const { return sum_[kCount]; }
 
-   private:
+ private:
     static constexpr int kCount = static_cast<int>(kBandMaxNm - kBandMinNm);
 
-    static glm::dvec3 density(const Spectrum& spectrum, double nm) {
-        return cieXyz(nm) * relativePower(spectrum, nm);
-    }
+    static glm::dvec3 density(const Spectrum& spectrum, double nm) { return cieXyz(nm) * relativePower(spectrum, nm); }
 
     std::array<glm::dvec3, kCount + 1> sum_;
 };
@@ -59,7 +58,9 @@ glm::dmat3 scaleRows(const glm::dmat3& m, const glm::dvec3& scale) {
     return glm::dmat3(m[0] * scale, m[1] * scale, m[2] * scale);
 }
 
-double luminance(const glm::dvec3& rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
+double luminance(const glm::dvec3& rgb) {
+    return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
 
 // Adds the light's colour and the matrix that divides by it, and scales the weights to Y = 1.
 void finish(WavelengthSet& set) {
@@ -88,7 +89,9 @@ double uniformInInverseSquare(double t) {
     return 1.0 / std::sqrt(std::lerp(1.0 / (kBandMaxNm * kBandMaxNm), 1.0 / (kBandMinNm * kBandMinNm), t));
 }
 
-double middle(double aNm, double bNm) { return 1.0 / std::sqrt(0.5 * (1.0 / (aNm * aNm) + 1.0 / (bNm * bNm))); }
+double middle(double aNm, double bNm) {
+    return 1.0 / std::sqrt(0.5 * (1.0 / (aNm * aNm) + 1.0 / (bNm * bNm)));
+}
 
 // The lines inside the band, ascending, each once.
 std::vector<double> usableLines(const Spectrum& spectrum) {

@@ -7,11 +7,17 @@ namespace caustream::optics {
 
 namespace {
 
-double square(double x) { return x * x; }
+double square(double x) {
+    return x * x;
+}
 
-double index(const ConstantIndex& d, double) { return d.n; }
+double index(const ConstantIndex& d, double) {
+    return d.n;
+}
 
-double index(const Cauchy& d, double um) { return d.A + d.B_um2 / square(um) + d.C_um4 / square(square(um)); }
+double index(const Cauchy& d, double um) {
+    return d.A + d.B_um2 / square(um) + d.C_um4 / square(square(um));
+}
 
 // The two constants make n(587.56 nm) = n_d and n(486.1) - n(656.3) = (n_d - 1) / V_d.
 double index(const Abbe& d, double um) {
@@ -26,9 +32,15 @@ double index(const Sellmeier& d, double um) {
     return std::sqrt(std::max(1.0, nSquared));
 }
 
-bool disperses(const ConstantIndex&) { return false; }
-bool disperses(const Cauchy& d) { return d.B_um2 != 0.0 || d.C_um4 != 0.0; }
-bool disperses(const Abbe& d) { return std::isfinite(d.V_d) && d.n_d != 1.0; }
+bool disperses(const ConstantIndex&) {
+    return false;
+}
+bool disperses(const Cauchy& d) {
+    return d.B_um2 != 0.0 || d.C_um4 != 0.0;
+}
+bool disperses(const Abbe& d) {
+    return std::isfinite(d.V_d) && d.n_d != 1.0;
+}
 bool disperses(const Sellmeier& d) {
     for (int i = 0; i < 3; ++i)
         if (d.B[i] != 0.0 && d.C_um2[i] != 0.0) return true;

@@ -9,7 +9,9 @@ namespace caustream::optics {
 
 namespace {
 
-double power(const EqualEnergy&, double) { return 1.0; }
+double power(const EqualEnergy&, double) {
+    return 1.0;
+}
 
 double power(const DaylightD65&, double nm) {
     const double x = (nm - kBandMinNm) / kD65StepNm;
@@ -26,7 +28,9 @@ double power(const Blackbody& light, double nm) {
     return std::pow(kBandMaxNm / nm, 5.0) * std::exp(xRed - x) * std::expm1(-xRed) / std::expm1(-x);
 }
 
-double power(const Lines&, double) { return 0.0; }
+double power(const Lines&, double) {
+    return 0.0;
+}
 
 }  // namespace
 

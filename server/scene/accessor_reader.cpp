@@ -10,7 +10,9 @@ namespace caustream::scene {
 
 namespace {
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 template <class T>
 double load(const std::uint8_t* bytes, double scale) {
@@ -22,24 +24,34 @@ double load(const std::uint8_t* bytes, double scale) {
 // One component; normalised integers become 0..1 or -1..1.
 double component(const std::uint8_t* bytes, int type, bool normalized) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return load<std::int8_t>(bytes, normalized ? 127.0 : 0.0);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<std::uint8_t>(bytes, normalized ? 255.0 : 0.0);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return load<std::int16_t>(bytes, normalized ? 32767.0 : 0.0);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(bytes, normalized ? 65535.0 : 0.0);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<std::uint32_t>(bytes, 0.0);
-        default: return load<float>(bytes, 0.0);
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return load<std::int8_t>(bytes, normalized ? 127.0 : 0.0);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return load<std::uint8_t>(bytes, normalized ? 255.0 : 0.0);
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return load<std::int16_t>(bytes, normalized ? 32767.0 : 0.0);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return load<std::uint16_t>(bytes, normalized ? 65535.0 : 0.0);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return load<std::uint32_t>(bytes, 0.0);
+        default:
+            return load<float>(bytes, 0.0);
     }
 }
 
 std::size_t componentBytes(int type) {
     switch (type) {
         case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return 1;
         case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return 2;
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-        default: return 0;
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return 4;
+        default:
+            return 0;
     }
 }
 
@@ -78,7 +90,8 @@ tl::expected<std::vector<double>, LoadError> readAccessor(const tinygltf::Model&
         return fail(name + " does not have " + std::to_string(components) + " components an element");
     if (a.count == 0) return fail(name + " is empty");
     if (a.count > maxCount)
-        return fail(name + " has " + std::to_string(a.count) + " elements; " + std::to_string(maxCount) + " are allowed");
+        return fail(name + " has " + std::to_string(a.count) + " elements; " + std::to_string(maxCount) +
+                    " are allowed");
 
     const std::size_t elementBytes = size * components;
     std::vector<double> values;

@@ -1,10 +1,10 @@
 // Accessors -> vectors, every byte checked before it is read.
 #pragma once
+#include <tiny_gltf.h>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
-#include <tiny_gltf.h>
 #include <tl/expected.hpp>
 #include <vector>
 

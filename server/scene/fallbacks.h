@@ -10,7 +10,8 @@ Light placeLight(const Bounds& subject, const Bounds& everything);
 // Looks down at the subject and the floor in front of it.
 Camera placeCamera(const Bounds& subject);
 
-// A square floor under the subject, wide enough for light that comes in at an angle: two triangles' vertices, facing up.
+// A square floor under the subject, wide enough for light that comes in at an angle: two triangles' vertices, facing
+// up.
 std::vector<Vertex> placeFloor(const Bounds& subject);
 
 }  // namespace caustream::scene

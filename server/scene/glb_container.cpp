@@ -7,9 +7,10 @@ namespace caustream::scene {
 
 namespace {
 
-constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;  // "glTF", "JSON", "BIN"
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A,
+                        kBinChunk = 0x004E4942;  // "glTF", "JSON", "BIN"
 constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
-constexpr int kMaxJsonDepth = 64;              // the glTF library recurses
+constexpr int kMaxJsonDepth = 64;                // the glTF library recurses
 constexpr std::size_t kMaxJsonValues = 500'000;  // and keeps some 250 bytes a value
 
 std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
@@ -18,7 +19,9 @@ std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
     return word;
 }
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 tl::expected<void, LoadError> checkJson(std::string_view json) {
     int depth = 0;
@@ -47,14 +50,16 @@ tl::expected<void, LoadError> checkJson(std::string_view json) {
 
 tl::expected<void, LoadError> checkContainer(std::span<const std::byte> glb, const LoadLimits& limits) {
     if (glb.size() > limits.bytes)
-        return fail("the file has " + std::to_string(glb.size()) + " bytes; " + std::to_string(limits.bytes) + " are allowed");
+        return fail("the file has " + std::to_string(glb.size()) + " bytes; " + std::to_string(limits.bytes) +
+                    " are allowed");
     if (glb.size() < kHeaderBytes + kChunkHeaderBytes) return fail("the file is too short for a GLB header");
     if (wordAt(glb, 0) != kGlbMagic) return fail("the file is not a GLB: it does not begin with \"glTF\"");
     if (const auto version = wordAt(glb, 4); version != 2)
         return fail("the GLB has version " + std::to_string(version) + "; only 2 is supported");
     const std::size_t length = wordAt(glb, 8);
     if (length != glb.size())
-        return fail("the GLB header says " + std::to_string(length) + " bytes, the file has " + std::to_string(glb.size()));
+        return fail("the GLB header says " + std::to_string(length) + " bytes, the file has " +
+                    std::to_string(glb.size()));
 
     std::size_t offset = kHeaderBytes;
     for (int chunk = 0; offset < length; ++chunk) {
@@ -64,7 +69,8 @@ tl::expected<void, LoadError> checkContainer(std::span<const std::byte> glb, con
         const std::uint32_t type = wordAt(glb, offset + 4);
         offset += kChunkHeaderBytes;
         if (size > length - offset)
-            return fail(name + " says " + std::to_string(size) + " bytes, " + std::to_string(length - offset) + " are left");
+            return fail(name + " says " + std::to_string(size) + " bytes, " + std::to_string(length - offset) +
+                        " are left");
         if (size % 4 != 0) return fail(name + " has a length that is not a multiple of 4");
         if (chunk == 0 && type != kJsonChunk) return fail("the first chunk is not JSON");
         if (chunk == 1 && type != kBinChunk) return fail("the second chunk is not BIN");

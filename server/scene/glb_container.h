@@ -8,8 +8,8 @@
 
 namespace caustream::scene {
 
-// Header, chunk lengths, and JSON that is shallow and small enough to be parsed into memory a few hundred times its size
-// per value. `bytes` up to limits.bytes.
+// Header, chunk lengths, and JSON that is shallow and small enough to be parsed into memory a few hundred times its
+// size per value. `bytes` up to limits.bytes.
 tl::expected<void, LoadError> checkContainer(std::span<const std::byte> glb, const LoadLimits& limits);
 
 }  // namespace caustream::scene

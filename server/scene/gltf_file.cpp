@@ -11,11 +11,13 @@ namespace caustream::scene {
 namespace {
 
 constexpr std::array<std::string_view, 9> kSupportedExtensions{
-    "KHR_lights_punctual",   "KHR_materials_dispersion", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",     "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume",  "KHR_mesh_quantization",    "KHR_texture_transform"};
+    "KHR_lights_punctual",  "KHR_materials_dispersion",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_volume", "KHR_mesh_quantization",      "KHR_texture_transform"};
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 // Every way to the file system ends here; `user` is the name of the first file asked for.
 bool refuseExists(const std::string& path, void* user) {
@@ -23,7 +25,9 @@ bool refuseExists(const std::string& path, void* user) {
     if (asked.empty()) asked = path;
     return false;
 }
-std::string keepPath(const std::string& path, void*) { return path; }
+std::string keepPath(const std::string& path, void*) {
+    return path;
+}
 bool refuseRead(std::vector<unsigned char>*, std::string*, const std::string& path, void* user) {
     return refuseExists(path, user);
 }
@@ -39,7 +43,9 @@ bool keepEncoded(tinygltf::Image* image, int index, std::string*, std::string*, 
     return true;
 }
 
-std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string firstLine(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
 
 }  // namespace
 
@@ -79,8 +85,8 @@ tl::expected<std::span<const std::uint8_t>, LoadError> viewBytes(const tinygltf:
                     ", which is not there");
     const std::vector<unsigned char>& data = model.buffers[v.buffer].data;
     if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset)
-        return fail("buffer view " + std::to_string(view) + " reaches " + std::to_string(v.byteLength) + " bytes from " +
-                    std::to_string(v.byteOffset) + " into a buffer of " + std::to_string(data.size()));
+        return fail("buffer view " + std::to_string(view) + " reaches " + std::to_string(v.byteLength) +
+                    " bytes from " + std::to_string(v.byteOffset) + " into a buffer of " + std::to_string(data.size()));
     return std::span(data).subspan(v.byteOffset, v.byteLength);
 }
 

@@ -1,10 +1,10 @@
 // tinygltf's view of a GLB, with nothing outside it ever opened and no image decoded yet.
 #pragma once
+#include <tiny_gltf.h>
 #include <cstdint>
 #include <map>
 #include <span>
 #include <string>
-#include <tiny_gltf.h>
 #include <tl/expected.hpp>
 #include <vector>
 

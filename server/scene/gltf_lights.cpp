@@ -12,7 +12,9 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr float kMaxIntensity = 1e12f;  // cd or lx: beyond it half the arithmetic of a frame overflows
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 glm::vec3 unitOr(const glm::dvec3& v, const glm::vec3& fallback) {
     const double length = glm::length(v);
@@ -29,10 +31,14 @@ tl::expected<Light, LoadError> readLight(const tinygltf::Light& source, const gl
     light.position = glm::vec3(world[3]);
     light.direction = unitOr(-glm::dvec3(world[2]), light.direction);  // glTF: along -Z of the node
 
-    if (source.type == "spot") light.type = LightType::Spot;
-    else if (source.type == "point") light.type = LightType::Point;
-    else if (source.type == "directional") light.type = LightType::Directional;
-    else return fail(what + " has the unknown type \"" + source.type + "\"");
+    if (source.type == "spot")
+        light.type = LightType::Spot;
+    else if (source.type == "point")
+        light.type = LightType::Point;
+    else if (source.type == "directional")
+        light.type = LightType::Directional;
+    else
+        return fail(what + " has the unknown type \"" + source.type + "\"");
 
     if (light.type == LightType::Spot) {
         light.innerConeDeg = static_cast<float>(source.spot.innerConeAngle * kDegPerRad);
@@ -46,7 +52,8 @@ tl::expected<Light, LoadError> readLight(const tinygltf::Light& source, const gl
         return fail(what + " has an intensity outside 0..1e12");
     if (source.color.size() == 3) light.color = glm::vec3(source.color[0], source.color[1], source.color[2]);
     for (int c = 0; c < 3; ++c)
-        if (!(light.color[c] >= 0.0f && light.color[c] <= 1e6f)) return fail(what + " has a colour that makes no sense");
+        if (!(light.color[c] >= 0.0f && light.color[c] <= 1e6f))
+            return fail(what + " has a colour that makes no sense");
 
     if (const tinygltf::Value* own = member(source.extras, "caustream")) {
         if (const tinygltf::Value* spectrum = member(*own, "spectrum")) {

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <map>
 
 #include "scene/fallbacks.h"
@@ -12,6 +10,7 @@
 #include "scene/gltf_file.h"
 #include "scene/gltf_lights.h"
 #include "scene/gltf_materials.h"
+#include "scene/gltf_nodes.h"
 #include "scene/mesh_cleaning.h"
 #include "scene/primitive_reader.h"
 
@@ -19,51 +18,25 @@ namespace caustream::scene {
 
 namespace {
 
-constexpr int kMaxNodeDepth = 256;
-constexpr std::size_t kMaxNodes = 100'000;  // visited: a node may not be reached twice, but the file may have many
-
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 using Status = tl::expected<void, LoadError>;
 
-glm::dmat4 localMatrix(const tinygltf::Node& node) {
-    if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-    glm::dvec3 translation(0.0), scale(1.0);
-    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
-    if (node.translation.size() == 3) translation = glm::make_vec3(node.translation.data());
-    if (node.scale.size() == 3) scale = glm::make_vec3(node.scale.data());
-    if (node.rotation.size() == 4)
-        rotation = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (glm::length(rotation) > 0.0) rotation = glm::normalize(rotation);
-    glm::dmat4 matrix = glm::mat4_cast(rotation);
-    for (int k = 0; k < 3; ++k) matrix[k] *= scale[k];
-    matrix[3] = glm::dvec4(translation, 1.0);
-    return matrix;
-}
-
-bool finite(const glm::dmat4& m) {
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r)
-            if (!std::isfinite(m[c][r])) return false;
-    return true;
-}
-
 class Loader {
-   public:
+ public:
     Loader(GltfFile file, const LoadLimits& limits)
-        : file_(std::move(file)), model_(file_.model), limits_(limits), textures_(file_, limits.texels),
+        : file_(std::move(file)),
+          model_(file_.model),
+          limits_(limits),
+          textures_(file_, limits.texels),
           budget_(6 * limits.triangles) {}
 
     tl::expected<Scene, LoadError> load(const std::string& name);
 
-   private:
-    struct PlacedNode {
-        int index;
-        glm::dmat4 world;
-    };
-
+ private:
     Status readMaterials();
-    Status placeNodes();
     Status readMeshes();
     Status readPart(const tinygltf::Mesh& mesh, const PlacedNode& node, std::map<int, Part>& parts);
     Status addObject(std::string name, int material, Part part);
@@ -73,7 +46,9 @@ class Loader {
     Status readSceneExtras();
     int defaultMaterial();
     void append(Object object, const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
-    const Bounds& subject() const { return geometry_->casterBounds.empty() ? geometry_->bounds : geometry_->casterBounds; }
+    const Bounds& subject() const {
+        return geometry_->casterBounds.empty() ? geometry_->bounds : geometry_->casterBounds;
+    }
     void warn(std::string sentence) { scene_.warnings.push_back(std::move(sentence)); }
 
     GltfFile file_;
@@ -91,7 +66,9 @@ class Loader {
 tl::expected<Scene, LoadError> Loader::load(const std::string& name) {
     scene_.name = name;
     if (auto ok = readMaterials(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = placeNodes(); !ok) return tl::unexpected(ok.error());
+    auto nodes = placeNodes(model_);
+    if (!nodes) return tl::unexpected(nodes.error());
+    nodes_ = std::move(*nodes);
     if (auto ok = readMeshes(); !ok) return tl::unexpected(ok.error());
     if (auto ok = readLights(); !ok) return tl::unexpected(ok.error());
     readCameras();
@@ -108,42 +85,6 @@ Status Loader::readMaterials() {
         auto material = readMaterial(model_.materials[i], textures_, name, scene_.warnings);
         if (!material) return tl::unexpected(material.error());
         scene_.materials.push_back(std::move(*material));
-    }
-    return {};
-}
-
-// World matrices of every node of the default scene, parents before children.
-Status Loader::placeNodes() {
-    std::vector<int> roots;
-    if (!model_.scenes.empty()) {
-        const int chosen = model_.defaultScene < 0 ? 0 : model_.defaultScene;
-        if (static_cast<std::size_t>(chosen) >= model_.scenes.size())
-            return fail("the file's scene " + std::to_string(chosen) + " is not there");
-        roots = model_.scenes[chosen].nodes;
-    } else {
-        for (std::size_t i = 0; i < model_.nodes.size(); ++i) roots.push_back(static_cast<int>(i));
-    }
-    struct Pending {
-        int node, depth;
-        glm::dmat4 parent;
-    };
-    std::vector<Pending> pending;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, 0, glm::dmat4(1.0)});
-    std::vector<bool> reached(model_.nodes.size(), false);
-    while (!pending.empty()) {
-        const Pending next = pending.back();
-        pending.pop_back();
-        const std::string what = "node " + std::to_string(next.node);
-        if (next.node < 0 || static_cast<std::size_t>(next.node) >= model_.nodes.size()) return fail(what + " is not there");
-        if (reached[next.node] && !model_.scenes.empty()) return fail(what + " has two parents or is its own ancestor");
-        if (next.depth > kMaxNodeDepth || nodes_.size() >= kMaxNodes) return fail("the file has too many nodes");
-        reached[next.node] = true;
-        const tinygltf::Node& node = model_.nodes[next.node];
-        const glm::dmat4 world = next.parent * localMatrix(node);
-        if (!finite(world)) return fail(what + " has a transform with NaN or infinity");
-        nodes_.push_back({next.node, world});
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-            pending.push_back({*child, next.depth + 1, world});
     }
     return {};
 }

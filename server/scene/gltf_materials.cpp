@@ -13,7 +13,9 @@ constexpr std::size_t kMaxTableEntries = 1024;
 constexpr double kMinIndex = 1.0, kMaxIndex = 10.0;  // of refraction, over the band
 constexpr std::size_t kMaxNameBytes = 64;
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 const tinygltf::Value* caustreamExtras(const tinygltf::Value& extras, const std::string& key) {
     const tinygltf::Value* own = member(extras, "caustream");
@@ -52,12 +54,14 @@ bool indexInRange(const optics::Dispersion& dispersion) {
 tl::expected<optics::Absorption, LoadError> readAbsorption(const tinygltf::Material& source,
                                                            const tinygltf::Value* volume, const std::string& what) {
     if (const auto* value = caustreamExtras(source.extras, "absorption")) {
-        if (!value->IsArray() || value->ArrayLen() != 2) return fail(what + ": absorption must be [[nm...], [per_m...]]");
+        if (!value->IsArray() || value->ArrayLen() != 2)
+            return fail(what + ": absorption must be [[nm...], [per_m...]]");
         optics::Absorption table{numbers(&value->Get(0)), numbers(&value->Get(1))};
-        const bool ascending = std::adjacent_find(table.nm.begin(), table.nm.end(), std::greater_equal<>()) == table.nm.end();
+        const bool ascending =
+            std::adjacent_find(table.nm.begin(), table.nm.end(), std::greater_equal<>()) == table.nm.end();
         const bool positive = std::all_of(table.perM.begin(), table.perM.end(), [](double s) { return s >= 0.0; });
-        if (table.nm.empty() || table.nm.size() != table.perM.size() || table.nm.size() > kMaxTableEntries || !ascending ||
-            !positive)
+        if (table.nm.empty() || table.nm.size() != table.perM.size() || table.nm.size() > kMaxTableEntries ||
+            !ascending || !positive)
             return fail(what + ": absorption needs as many per_m >= 0 as nm, with nm ascending");
         return table;
     }
@@ -142,8 +146,9 @@ tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source,
     // surface
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     if (pbr.baseColorFactor.size() == 4)
-        material.baseColor = glm::clamp(glm::vec4(vector3(pbr.baseColorFactor, glm::vec3(1.0f)), pbr.baseColorFactor[3]),
-                                        glm::vec4(0.0f), glm::vec4(1.0f));
+        material.baseColor =
+            glm::clamp(glm::vec4(vector3(pbr.baseColorFactor, glm::vec3(1.0f)), pbr.baseColorFactor[3]),
+                       glm::vec4(0.0f), glm::vec4(1.0f));
     material.roughness = static_cast<float>(std::clamp(pbr.roughnessFactor, 0.0, 1.0));
     material.metallic = static_cast<float>(std::clamp(pbr.metallicFactor, 0.0, 1.0));
     if (pbr.baseColorTexture.index >= 0) {
@@ -162,8 +167,7 @@ tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source,
     const auto* volume = extension(source.extensions, "KHR_materials_volume");
     const bool solid = volume && numberOr(member(*volume, "thicknessFactor"), 0.0) > 0.0;
     material.thinWalled = volume && !solid;
-    if (!volume)
-        warnings.push_back(what + " transmits but has no KHR_materials_volume; it is taken as solid glass");
+    if (!volume) warnings.push_back(what + " transmits but has no KHR_materials_volume; it is taken as solid glass");
     const auto dispersion = readDispersion(source, what);
     if (!dispersion) return tl::unexpected(dispersion.error());
     if (!indexInRange(*dispersion)) return fail(what + ": its refractive index leaves 1 to 10 within 380-680 nm");
@@ -188,12 +192,12 @@ tl::expected<optics::Spectrum, LoadError> readSpectrum(const tinygltf::Value& va
         optics::Lines lines;
         for (std::size_t i = 1; i < value.ArrayLen(); ++i)
             lines.nm.push_back(numberOr(&value.Get(static_cast<int>(i)), 0.0));
-        const bool inBand = std::all_of(lines.nm.begin(), lines.nm.end(), [](double nm) {
-            return nm >= optics::kBandMinNm && nm <= optics::kBandMaxNm;
-        });
+        const bool inBand = std::all_of(lines.nm.begin(), lines.nm.end(),
+                                        [](double nm) { return nm >= optics::kBandMinNm && nm <= optics::kBandMaxNm; });
         if (!lines.nm.empty() && inBand) return lines;
     }
-    return fail(what + R"(: spectrum must be ["E"], ["D65"], ["blackbody", K] with K in 500..100000, or ["lines", nm...])");
+    return fail(what +
+                R"(: spectrum must be ["E"], ["D65"], ["blackbody", K] with K in 500..100000, or ["lines", nm...])");
 }
 
 }  // namespace caustream::scene

@@ -12,14 +12,14 @@ namespace caustream::scene {
 
 // Decodes each image once and numbers the textures in the order they are asked for.
 class TextureTable {
-   public:
+ public:
     TextureTable(const GltfFile& file, std::size_t maxTexels) : file_(file), texelsLeft_(maxTexels) {}
 
     // Scene::textures index of a glTF texture.
     tl::expected<int, LoadError> use(int gltfTexture, const std::string& what);
     std::vector<Texture> take() { return std::move(textures_); }
 
-   private:
+ private:
     const GltfFile& file_;
     std::size_t texelsLeft_;
     std::map<int, int> ofImage_;
@@ -29,10 +29,10 @@ class TextureTable {
 // Names that stay the same from load to load: the file's own, "kind" or "kind-3" where it has none, and "name-3" where
 // another has it already.
 class NameTable {
-   public:
+ public:
     std::string unique(const std::string& name, const std::string& kind, std::size_t index);
 
-   private:
+ private:
     std::vector<std::string> taken_;
 };
 

@@ -1,14 +1,16 @@
 #include "scene/image_decoder.h"
 
-#include <memory>
 #include <png.h>
 #include <turbojpeg.h>
+#include <memory>
 
 namespace caustream::scene {
 
 namespace {
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
 bool fits(std::size_t width, std::size_t height, std::size_t maxTexels) {
     return width > 0 && height > 0 && width <= maxTexels / height;

@@ -1,5 +1,5 @@
-// PNG or JPEG bytes -> Texture, by libpng and libjpeg-turbo: both decode row by row, so a small file cannot ask for more
-// memory than its announced size, which is checked first.
+// PNG or JPEG bytes -> Texture, by libpng and libjpeg-turbo: both decode row by row, so a small file cannot ask for
+// more memory than its announced size, which is checked first.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -14,7 +14,9 @@ namespace caustream::scene {
 
 namespace {
 
-bool finiteVec(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finiteVec(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 // Inverse transpose times the determinant's square: the direction of normals under `m`, also when m has no inverse.
 glm::dmat3 normalMatrix(const glm::dmat3& m) {
@@ -41,11 +43,14 @@ std::vector<std::uint32_t> weld(const Part& part) {
     numbers.reserve(part.vertices.size());
     std::vector<std::uint32_t> welded(part.vertices.size());
     for (std::size_t i = 0; i < welded.size(); ++i)
-        welded[i] = numbers.try_emplace(part.vertices[i].position, static_cast<std::uint32_t>(numbers.size())).first->second;
+        welded[i] =
+            numbers.try_emplace(part.vertices[i].position, static_cast<std::uint32_t>(numbers.size())).first->second;
     return welded;
 }
 
-std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b) { return static_cast<std::uint64_t>(a) << 32 | b; }
+std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b) {
+    return static_cast<std::uint64_t>(a) << 32 | b;
+}
 
 }  // namespace
 
@@ -62,7 +67,8 @@ std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, 
     if (!finite) return 0;
 
     constexpr std::uint32_t kNone = ~0u;
-    std::vector<std::uint32_t> shared(soup.positions.size(), kNone);  // file's vertex -> part's, where a normal is given
+    std::vector<std::uint32_t> shared(soup.positions.size(),
+                                      kNone);  // file's vertex -> part's, where a normal is given
     std::size_t dropped = 0;
     for (std::size_t t = 0; t < soup.indices.size(); t += 3) {
         std::array<std::uint32_t, 3> corner{soup.indices[t], soup.indices[t + 1], soup.indices[t + 2]};

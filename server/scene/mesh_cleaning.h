@@ -15,8 +15,8 @@ struct Part {  // of one object; indices into its own vertices
     std::vector<std::uint32_t> indices;
 };
 
-// Appends `soup`, moved by `world`, to `part`: a mirror keeps counter-clockwise outside, triangles without area are left
-// out (their number is returned), vertices without a usable normal get their triangle's. False in `finite` when a
+// Appends `soup`, moved by `world`, to `part`: a mirror keeps counter-clockwise outside, triangles without area are
+// left out (their number is returned), vertices without a usable normal get their triangle's. False in `finite` when a
 // position overflows.
 std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, bool& finite);
 

@@ -9,9 +9,13 @@ namespace caustream::scene {
 
 namespace {
 
-tl::unexpected<LoadError> fail(std::string message) { return tl::unexpected(LoadError{std::move(message)}); }
+tl::unexpected<LoadError> fail(std::string message) {
+    return tl::unexpected(LoadError{std::move(message)});
+}
 
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
     const auto found = primitive.attributes.find(name);
@@ -27,8 +31,7 @@ std::vector<std::uint32_t> triangleList(std::vector<std::uint32_t> in, int mode)
     std::vector<std::uint32_t> out;
     for (std::size_t i = 0; i + 2 < in.size(); ++i) {
         if (mode == TINYGLTF_MODE_TRIANGLE_FAN) out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
-        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
-            out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
+        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
     }
     return out;
 }
@@ -49,7 +52,8 @@ tl::expected<TriangleSoup, LoadError> readPrimitive(const tinygltf::Model& model
     budget -= soup.positions.size();
     for (const glm::dvec3& p : soup.positions)
         if (!finite(p))
-            return fail("accessor " + std::to_string(positionAccessor) + " (" + what + "'s POSITION) holds NaN or infinity");
+            return fail("accessor " + std::to_string(positionAccessor) + " (" + what +
+                        "'s POSITION) holds NaN or infinity");
 
     // normals and texture coordinates
     if (const int accessor = attribute(primitive, "NORMAL"); accessor >= 0) {
@@ -62,7 +66,8 @@ tl::expected<TriangleSoup, LoadError> readPrimitive(const tinygltf::Model& model
         auto uvs = readVec2(model, accessor, soup.positions.size(), what + "'s TEXCOORD");
         if (!uvs) return tl::unexpected(uvs.error());
         soup.uvs = std::move(*uvs);
-        if (soup.uvs.size() != soup.positions.size()) return fail(what + " has fewer texture coordinates than positions");
+        if (soup.uvs.size() != soup.positions.size())
+            return fail(what + " has fewer texture coordinates than positions");
         for (glm::dvec2& p : soup.uvs) p = glm::dvec2(uv.transform * glm::dvec3(p, 1.0));
     }
 

@@ -5,7 +5,9 @@
 
 namespace caustream::scene {
 
-float Bounds::radius() const { return empty() ? 0.0f : 0.5f * glm::distance(min, max); }
+float Bounds::radius() const {
+    return empty() ? 0.0f : 0.5f * glm::distance(min, max);
+}
 
 void Bounds::add(const glm::vec3& point) {
     min = glm::min(min, point);

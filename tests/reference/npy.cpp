@@ -1,10 +1,10 @@
 #include "tests/reference/npy.h"
 
+#include <zlib.h>
 #include <cstring>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
-#include <zlib.h>
 
 namespace caustream::reference {
 

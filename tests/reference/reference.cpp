@@ -65,7 +65,8 @@ std::vector<std::uint8_t> makeGlb(const Reference& reference, int sphereLevels) 
     const int white = glb.addMaterial(scenes::matteMaterial("floor", {0.8f, 0.8f, 0.8f}));
     glb.addMesh("caster", casterMesh(reference.json.at("object"), sphereLevels), caster);
     constexpr float kHalf = 10.0f;
-    glb.addMesh("floor", scenes::quad({-kHalf, 0, kHalf}, {kHalf, 0, kHalf}, {kHalf, 0, -kHalf}, {-kHalf, 0, -kHalf}), white);
+    glb.addMesh("floor", scenes::quad({-kHalf, 0, kHalf}, {kHalf, 0, kHalf}, {kHalf, 0, -kHalf}, {-kHalf, 0, -kHalf}),
+                white);
 
     const auto aim = reference.json.at("light").at("aim_point").get<std::array<double, 3>>();
     const auto& from = reference.lightPosition;

@@ -10,20 +10,20 @@
 
 namespace caustream::reference {
 
-struct Window {                 // on the floor y = 0; cell (i, j) has its middle at x0 + (i + .5) w / cells, z0 + (j + .5) w / cells
+struct Window {  // on the floor y = 0; cell (i, j) has its middle at x0 + (i + .5) w / cells, z0 + (j + .5) w / cells
     double x0 = 0, z0 = 0, width = 1;  // m
     int cells = 256;
 };
 
 struct Reference {
-    nlohmann::json json;             // the file, whole
+    nlohmann::json json;  // the file, whole
     Window window;
     std::array<double, 3> lightPosition{};
     double halfAngleDeg = 0;         // hard edge, 1 cd inside
     std::vector<double> nm;          // of the bands of mono7
     std::vector<double> windowFlux;  // of each band, as the tracer summed it
     Array mono7;                     // [nm][j][i] irradiance of the caustic alone for 1 W/sr; no direct light
-    Array direct;                    // [j][i] direct irradiance cos / r^2, 0 in the caster's shadow and outside the cone
+    Array direct;  // [j][i] direct irradiance cos / r^2, 0 in the caster's shadow and outside the cone
 };
 
 // Throws std::runtime_error when a file is missing or damaged.

@@ -1,10 +1,10 @@
 // Hostile files: every one is a clear error, soon, and without memory taken for lengths that were only claimed.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <gtest/gtest.h>
 #include <random>
-#include <sys/resource.h>
 
 #include "glb_editor.h"
 
@@ -18,7 +18,9 @@ void expectError(const std::vector<std::uint8_t>& file, const std::string& part)
     EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
 }
 
-void expectError(const Glb& glb, const std::string& part) { expectError(glb.pack(), part); }
+void expectError(const Glb& glb, const std::string& part) {
+    expectError(glb.pack(), part);
+}
 
 // A tetrahedron changed by `edit`.
 Glb edited(const std::function<void(json&)>& edit) {
@@ -73,11 +75,15 @@ TEST(BadGlb, JsonThatIsNone) {
     expectError(packText(R"({"asset":{"version":"2.0"},"meshes":7})", {}), "no mesh");
     expectError(packText("[]", {}), "glTF cannot be read");
     expectError(packText(std::string(100'000, '['), {}), "nested deeper");
-    expectError(packText("{\"asset\":{\"version\":\"2.0\"},\"extras\":[0" + [] {
-                    std::string many;
-                    for (int i = 0; i < 600'000; ++i) many += ",0";
-                    return many;
-                }() + "]}", {}), "values");
+    expectError(packText("{\"asset\":{\"version\":\"2.0\"},\"extras\":[0" +
+                             [] {
+                                 std::string many;
+                                 for (int i = 0; i < 600'000; ++i) many += ",0";
+                                 return many;
+                             }() +
+                             "]}",
+                         {}),
+                "values");
 }
 
 TEST(BadGlb, NoMesh) {
@@ -142,12 +148,11 @@ TEST(BadGlb, ThingsThatAreNotThere) {
     expectError(edited([](json& root) { root["scenes"][0]["nodes"] = {4}; }), "node 4");
     expectError(edited([](json& root) { root["scenes"][0]["nodes"] = {-1}; }), "node -1");
     EXPECT_FALSE(load(edited([](json& root) { root["scene"] = 3; })));
-    expectError(edited([](json& root) {
-                    root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 2;
-                }), "texture 2");
-    expectError(edited([](json& root) {
-                    root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2;
-                }), "light");
+    expectError(
+        edited([](json& root) { root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 2; }),
+        "texture 2");
+    expectError(edited([](json& root) { root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2; }),
+                "light");
 }
 
 TEST(BadGlb, ImagesOutsideTheirBuffers) {
@@ -195,7 +200,8 @@ TEST(BadGlb, NodesThatAreTheirOwnAncestors) {
     expectError(edited([](json& root) {
                     root["nodes"].push_back({{"children", {0}}});
                     root["nodes"][0]["children"] = {1};
-                }), "node");
+                }),
+                "node");
 }
 
 TEST(BadGlb, HugeCountsTakeNoMemory) {
@@ -246,9 +252,8 @@ TEST(BadGlb, RandomChangesNeverCrash) {
     glb.root["extensions"]["KHR_lights_punctual"]["lights"] = {
         {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}};
     glb.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-    glb.root["accessors"][0]["sparse"] = {{"count", 1},
-                                          {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
-                                          {"values", {{"bufferView", 0}}}};
+    glb.root["accessors"][0]["sparse"] = {
+        {"count", 1}, {"indices", {{"bufferView", 1}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}};
     glb.root["materials"][0]["extras"]["caustream"] = {{"cauchy", {1.5, 0.01}}, {"absorption", {{380, 680}, {1, 2}}}};
     const std::vector<std::uint8_t> whole = glb.pack();
     ASSERT_TRUE(load(whole));
@@ -256,11 +261,13 @@ TEST(BadGlb, RandomChangesNeverCrash) {
     const auto tries = [&](std::vector<std::uint8_t> file) { loaded += load(file).has_value(); };
     for (int i = 0; i < 3000; ++i) {
         std::vector<std::uint8_t> file = whole;
-        for (unsigned k = 0; k <= random() % 3; ++k) file[20 + random() % (file.size() - 20)] = static_cast<std::uint8_t>(random());
+        for (unsigned k = 0; k <= random() % 3; ++k)
+            file[20 + random() % (file.size() - 20)] = static_cast<std::uint8_t>(random());
         tries(file);
     }
     // Numbers and types inside the JSON exchanged for others: gets past the parser more often.
-    const std::vector<json> values{-1, 0, 1, 3, 255, 1e9, 1e300, -1e300, "x", "", nullptr, true, json::array(), json::object()};
+    const std::vector<json> values{-1,     0,   1,  3,       255,  1e9,           1e300,
+                                   -1e300, "x", "", nullptr, true, json::array(), json::object()};
     const json flat = glb.root.flatten();
     for (const auto& [pointer, value] : flat.items())
         for (const json& other : values) {

@@ -1,7 +1,7 @@
 // The scenes that come with the server load without a warning, closed, lit and looked at.
+#include <gtest/gtest.h>
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
 #include <map>
 
 #include "scene/builtin_scenes.h"
@@ -11,8 +11,9 @@ namespace caustream::scene {
 namespace {
 
 Part partOf(const Geometry& geometry, const Object& object) {
-    return {geometry.vertices, {geometry.indices.begin() + object.firstIndex,
-                                geometry.indices.begin() + object.firstIndex + object.indexCount}};
+    return {geometry.vertices,
+            {geometry.indices.begin() + object.firstIndex,
+             geometry.indices.begin() + object.firstIndex + object.indexCount}};
 }
 
 std::vector<std::string> names() {

@@ -1,6 +1,6 @@
 // White stays white: weights of any sampling sum to (1, 1, 1), and so does any partition of the band.
-#include <cmath>
 #include <gtest/gtest.h>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -11,8 +11,9 @@
 namespace caustream::optics {
 namespace {
 
-const std::vector<Spectrum> kSpectra{EqualEnergy{},     DaylightD65{},         Blackbody{1000.0}, Blackbody{2856.0},
-                                     Blackbody{20000.0}, Lines{{486.1, 589.3, 656.3}}, Lines{{450.0}}};
+const std::vector<Spectrum> kSpectra{EqualEnergy{},     DaylightD65{},      Blackbody{1000.0},
+                                     Blackbody{2856.0}, Blackbody{20000.0}, Lines{{486.1, 589.3, 656.3}},
+                                     Lines{{450.0}}};
 
 glm::dvec3 total(const WavelengthSet& set) {
     return std::accumulate(set.xyz.begin(), set.xyz.end(), glm::dvec3(0.0));
@@ -91,7 +92,8 @@ TEST(Colour, TheObserverIsTheTableAtItsNodes) {
         return std::exp(-0.5 * t * t);
     };
     for (double nm = kBandMinNm; nm <= kBandMaxNm; nm += 1.0)
-        EXPECT_NEAR(cieXyz(nm).y, 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322), 0.015)
+        EXPECT_NEAR(cieXyz(nm).y, 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
+                    0.015)
             << nm;
 }
 
@@ -145,9 +147,10 @@ glm::dvec3 throughGlass(const Absorption& absorption, double distanceM) {
 
 TEST(Absorption, GivesItsColourBack) {
     for (double distance : {0.01, 1.0, 250.0})
-        for (const glm::dvec3& color : {glm::dvec3(0.5), glm::dvec3(0.9, 0.95, 0.91), glm::dvec3(0.2, 0.6, 0.3),
-                                        glm::dvec3(0.1, 0.1, 0.8), glm::dvec3(0.7, 0.3, 0.05), glm::dvec3(0.02, 0.4, 0.4),
-                                        glm::dvec3(1.0, 0.5, 0.5), glm::dvec3(0.95, 0.05, 0.05)}) {
+        for (const glm::dvec3& color :
+             {glm::dvec3(0.5), glm::dvec3(0.9, 0.95, 0.91), glm::dvec3(0.2, 0.6, 0.3), glm::dvec3(0.1, 0.1, 0.8),
+              glm::dvec3(0.7, 0.3, 0.05), glm::dvec3(0.02, 0.4, 0.4), glm::dvec3(1.0, 0.5, 0.5),
+              glm::dvec3(0.95, 0.05, 0.05)}) {
             SCOPED_TRACE(std::to_string(color.r) + " " + std::to_string(color.g) + " " + std::to_string(color.b));
             const Absorption absorption = absorptionFromRgb(color, distance);
             // A quarter of an 8-bit step: the table's linear pieces against the sigmoid that was fitted.

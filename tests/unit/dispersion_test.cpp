@@ -1,6 +1,6 @@
 // Glasses at the wavelengths their catalogues give: d = 587.56, F = 486.13, C = 656.27 nm.
-#include <cmath>
 #include <gtest/gtest.h>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -28,12 +28,12 @@ TEST(Dispersion, PresetsHaveTheirKnownIndices) {
         double n_d, tolerance;
     } known[]{
         {"fused silica", 1.4585, 0.010},  // Malitson 1965; the thesis's two terms lie above it
-        {"BK7", 1.5168, 5e-4},           // Schott
-        {"K5", 1.5225, 0.013},           // Schott; above it likewise
-        {"BaK4", 1.5688, 0.016},         // likewise
-        {"BaF10", 1.6700, 0.022},        // likewise
-        {"SF11", 1.78472, 1e-5},         // Schott
-        {"diamond", 2.4176, 1e-3},       // Peter 1923 at 589.3 nm: 2.4175
+        {"BK7", 1.5168, 5e-4},            // Schott
+        {"K5", 1.5225, 0.013},            // Schott; above it likewise
+        {"BaK4", 1.5688, 0.016},          // likewise
+        {"BaF10", 1.6700, 0.022},         // likewise
+        {"SF11", 1.78472, 1e-5},          // Schott
+        {"diamond", 2.4176, 1e-3},        // Peter 1923 at 589.3 nm: 2.4175
         {"exaggerated", 1.4580 + 0.6 / (0.58756 * 0.58756), 1e-4},
     };
     ASSERT_EQ(std::size(known), kGlassPresets.size());
@@ -65,7 +65,9 @@ TEST(Dispersion, AbbeGivesItsIndexAndNumberBack) {
     EXPECT_EQ(refractiveIndex(Abbe{1.0001, 0.001}, 680.0), 1.0);  // never below vacuum
 }
 
-TEST(Dispersion, SellmeierOfSF11HasTheCatalogueAbbeNumber) { EXPECT_NEAR(abbeNumber(preset("SF11")), 25.76, 0.01); }
+TEST(Dispersion, SellmeierOfSF11HasTheCatalogueAbbeNumber) {
+    EXPECT_NEAR(abbeNumber(preset("SF11")), 25.76, 0.01);
+}
 
 TEST(Dispersion, ConstantGlassDoesNotDisperse) {
     EXPECT_FALSE(isDispersive(ConstantIndex{1.5}));

@@ -26,7 +26,7 @@ struct Glb {
 
     std::vector<std::uint8_t> pack() const;
 
-   private:
+ private:
     int viewOf(const void* data, std::size_t bytes, int stride);
 };
 

@@ -1,7 +1,7 @@
 // Materials: extensions and extras.caustream, each to known numbers; textures; names.
-#include <cmath>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <cmath>
 
 #include "glb_editor.h"
 
@@ -28,7 +28,9 @@ std::string errorOf(const json& material) {
     return scene ? "" : scene.error().message;
 }
 
-json extras(const json& own) { return {{"extras", {{"caustream", own}}}}; }
+json extras(const json& own) {
+    return {{"extras", {{"caustream", own}}}};
+}
 
 TEST(GltfMaterial, TransmissionMakesACaster) {
     EXPECT_TRUE(materialOf(json::object()).caster);
@@ -43,7 +45,8 @@ TEST(GltfMaterial, IndexIsOneAndAHalfOrWhatIsSaid) {
 }
 
 TEST(GltfMaterial, DispersionIsTwentyOverTheAbbeNumber) {
-    const json glass{{"extensions", {{"KHR_materials_ior", {{"ior", 1.7}}}, {"KHR_materials_dispersion", {{"dispersion", 0.5}}}}}};
+    const json glass{
+        {"extensions", {{"KHR_materials_ior", {{"ior", 1.7}}}, {"KHR_materials_dispersion", {{"dispersion", 0.5}}}}}};
     const auto abbe = std::get<optics::Abbe>(materialOf(glass).dispersion);
     EXPECT_EQ(abbe.n_d, 1.7);
     EXPECT_EQ(abbe.V_d, 40.0);
@@ -54,7 +57,8 @@ TEST(GltfMaterial, ExtrasSayWhatGltfCannot) {
     EXPECT_EQ(cauchy.A, 1.6);
     EXPECT_EQ(cauchy.B_um2, 0.03);
     EXPECT_EQ(cauchy.C_um4, 0.0);
-    const json sf11 = extras({{"sellmeier", {1.73848403, 0.311168974, 1.17490871, 0.0136068604, 0.0615960463, 121.922711}}});
+    const json sf11 =
+        extras({{"sellmeier", {1.73848403, 0.311168974, 1.17490871, 0.0136068604, 0.0615960463, 121.922711}}});
     EXPECT_NEAR(optics::refractiveIndex(materialOf(sf11).dispersion, 587.56), 1.78472, 1e-5);
     const json table = extras({{"absorption", {{380, 680}, {0.1, 0.3}}}});
     EXPECT_NEAR(materialOf(table).absorption.at(530.0), 0.2, 1e-12);
@@ -72,8 +76,9 @@ TEST(GltfMaterial, ExtrasThatMakeNoSenseAreErrors) {
 }
 
 TEST(GltfMaterial, AttenuationBecomesASpectrum) {
-    const json glass{{"extensions",
-                      {{"KHR_materials_volume", {{"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.5, 0.5}}}}}}};
+    const json glass{
+        {"extensions",
+         {{"KHR_materials_volume", {{"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0.5, 0.5}}}}}}};
     const Material material = materialOf(glass);
     EXPECT_NEAR(material.absorption.at(530.0), -std::log(0.5) / 0.5, 1e-3);
 }
@@ -85,10 +90,11 @@ TEST(GltfMaterial, ThicknessZeroIsThinWalled) {
 }
 
 TEST(GltfMaterial, SurfaceFactors) {
-    const json surface{{"emissiveFactor", {0.5, 0.25, 0.0}},
-                       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4.0}}}}},
-                       {"pbrMetallicRoughness",
-                        {{"baseColorFactor", {0.1, 0.2, 0.3, 1.0}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}}};
+    const json surface{
+        {"emissiveFactor", {0.5, 0.25, 0.0}},
+        {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4.0}}}}},
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {0.1, 0.2, 0.3, 1.0}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}}};
     const Material material = materialOf(surface);
     EXPECT_EQ(material.baseColor, glm::vec4(0.1f, 0.2f, 0.3f, 1.0f));
     EXPECT_EQ(material.metallic, 0.25f);

@@ -1,7 +1,7 @@
 // The scene maker's shapes: face counts, closedness and volumes against closed forms.
+#include <gtest/gtest.h>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -55,8 +55,8 @@ TEST(Mesh, TorusIsATorus) {
 }
 
 TEST(Mesh, PolyhedronOfSixPlanesIsABox) {
-    const std::vector<glm::dvec4> planes{{1, 0, 0, 2}, {-1, 0, 0, 1}, {0, 1, 0, 3}, {0, -1, 0, 0}, {0, 0, 1, 1}, {0, 0, -1, 1},
-                                         {0.6, 0.8, 0, 99}};  // the last cuts nothing off
+    const std::vector<glm::dvec4> planes{{1, 0, 0, 2}, {-1, 0, 0, 1}, {0, 1, 0, 3},     {0, -1, 0, 0},
+                                         {0, 0, 1, 1}, {0, 0, -1, 1}, {0.6, 0.8, 0, 99}};  // the last cuts nothing off
     const Mesh mesh = convexPolyhedron(planes);
     EXPECT_EQ(mesh.indices.size() / 3, 12u);
     EXPECT_TRUE(closed(mesh));

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-#include "tests/reference/reference.h"
 #include "scene/gltf_loader.h"
+#include "tests/reference/reference.h"
 
 namespace caustream::reference {
 namespace {

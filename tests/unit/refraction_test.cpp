@@ -1,7 +1,7 @@
 // Snell and Fresnel against closed forms: slab displacement, prism deviation, ball-lens focus, energy, Brewster.
+#include <gtest/gtest.h>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
 #include <numbers>
 
 #include "optics/dispersion.h"
@@ -12,10 +12,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double radians(double degrees) { return degrees * kPi / 180.0; }
+double radians(double degrees) {
+    return degrees * kPi / 180.0;
+}
 
 // In the x-y plane: pointing `angle` away from -y towards +x.
-glm::dvec3 downwards(double angle) { return {std::sin(angle), -std::cos(angle), 0.0}; }
+glm::dvec3 downwards(double angle) {
+    return {std::sin(angle), -std::cos(angle), 0.0};
+}
 
 // Where a ray meets the plane n . x = d.
 glm::dvec3 meet(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& n, double d) {
