@@ -20,9 +20,10 @@ void addBoxCamera(GlbWriter& glb) {
     glb.addCamera("camera", {0.0, 1.35, 2.95}, {0.0, 0.46, 0.0}, 36.0);
 }
 
-void addRoom(GlbWriter& glb) {
+// `ambient` and `exposureBiasEv` as in extras.caustream: how bright shadows are, and the whole picture.
+void addRoom(GlbWriter& glb, double ambient = 0.10, double exposureBiasEv = 0.0) {
     addCornellBox(glb);
-    glb.setSceneExtras({{"environment", {0.10, 0.10, 0.11}}});
+    glb.setSceneExtras({{"environment", {ambient, ambient, 1.1 * ambient}}, {"exposure_bias_ev", exposureBiasEv}});
     addBoxCamera(glb);
 }
 
@@ -73,7 +74,7 @@ std::vector<std::uint8_t> makeRing() {
 
 std::vector<std::uint8_t> makeGem() {
     GlbWriter glb;
-    addRoom(glb);
+    addRoom(glb, 0.06, -0.3);  // dark, for the faint ends of the rainbows
     const int glass = glb.addMaterial(glassMaterial("gem", 1.587, {{"cauchy", {1.50, 0.03}}}));
     Mesh gem = convexPolyhedron(gemPlanes());
     glm::mat4 place = glm::translate(glm::mat4(1.0f), {0.0f, 0.62f, -0.05f});
@@ -81,7 +82,7 @@ std::vector<std::uint8_t> makeGem() {
     place = glm::rotate(place, static_cast<float>(radians(-12.0)), {1.0f, 0.0f, 0.0f});
     transform(gem, glm::scale(place, glm::vec3(0.85f)));
     glb.addMesh("gem", gem, glass);
-    glb.addLight(spotLight("key", 60.0, 14.5, 17.0), {0.5, 1.92, -0.6}, {0.04, 0.62, -0.08});
+    glb.addLight(spotLight("key", 60.0, 21.0, 29.0), {0.5, 1.92, -0.6}, {0.0, 0.5, 0.0});
     return glb.finish();
 }
 

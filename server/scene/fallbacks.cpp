@@ -36,7 +36,7 @@ Light placeLight(const Bounds& subject, const Bounds& everything) {
 }
 
 Camera placeCamera(const Bounds& subject) {
-    constexpr float kFovDeg = 40.0f, kDistanceInRadii = 5.0f;
+    constexpr float kFovDeg = 40.0f, kDistanceInRadii = 4.3f;
     const float radius = sizeOf(subject);
     Camera camera;
     camera.name = "camera";

@@ -173,13 +173,28 @@ TEST(GltfTexture, TransformIsBakedIntoUv) {
     EXPECT_EQ(scene->geometry->vertices[2].uv, glm::vec2(0.5f, 4.25f));
 }
 
+TEST(GltfTexture, ALightsCookieIsATexture) {
+    Glb glb = withTexture(redGreenPng());
+    json light{{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}};
+    light["extras"]["caustream"]["cookie"] = 0;
+    glb.root["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    glb.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    const auto scene = load(glb);
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(scene->lights[0].cookie, 0);
+    glb.root["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["caustream"]["cookie"] = 5;
+    EXPECT_FALSE(load(glb));
+}
+
 TEST(GltfScene, EnvironmentAndOutsideIndexRideInExtras) {
     Glb glb = glassTetrahedron();
-    glb.root["scenes"][0]["extras"]["caustream"] = {{"environment", {0.1, 0.2, 0.3}}, {"outside_index", 1.0003}};
+    glb.root["scenes"][0]["extras"]["caustream"] = {
+        {"environment", {0.1, 0.2, 0.3}}, {"outside_index", 1.0003}, {"exposure_bias_ev", -1.5}};
     auto scene = load(glb);
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_EQ(scene->environmentColor, glm::vec3(0.1f, 0.2f, 0.3f));
     EXPECT_EQ(scene->outsideIndex, 1.0003);
+    EXPECT_EQ(scene->exposureBiasEv, -1.5f);
     glb.root["scenes"][0]["extras"]["caustream"]["outside_index"] = 0.5;
     scene = load(glb);
     ASSERT_FALSE(scene);

@@ -70,6 +70,17 @@ TEST(Mesh, BoxAndQuadFaceOutAndUp) {
     EXPECT_EQ(quad({0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {0, 0, 0}).normals[0], glm::vec3(0, 1, 0));
 }
 
+// A cone frustum's wall, base and top: volume pi h (R^2 + R r + r^2) / 3.
+TEST(Mesh, LatheClosesAtTheAxisAndAtItsEdges) {
+    const std::vector<Profile> curves{{{0.0, 0.0}, {1.0, 0.0}}, {{1.0, 0.0}, {0.5, 2.0}}, {{0.5, 2.0}, {0.0, 2.0}}};
+    const Mesh mesh = lathe(curves, 256);
+    EXPECT_EQ(mesh.indices.size() / 3, 256u * 4u);  // two discs of one triangle a step, a wall of two
+    EXPECT_TRUE(closed(mesh));
+    EXPECT_NEAR(signedVolume(mesh), kPi * 2.0 * 1.75 / 3.0, 1e-3);
+    EXPECT_EQ(mesh.normals.front(), glm::vec3(0, -1, 0));
+    EXPECT_EQ(mesh.normals.back(), glm::vec3(0, 1, 0));
+}
+
 TEST(Mesh, SmoothNormalsOfASphereAreRadial) {
     Mesh mesh = icosphere(3, {0.0, 0.0, 0.0}, 1.0);
     mesh.normals.clear();
