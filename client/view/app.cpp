@@ -112,7 +112,7 @@ void App::handleMouse(const Rectangle& shown) {
     const bool onPicture = !io.WantCaptureMouse && model_.haveScene;
     if (onPicture && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         drag_ = io.KeyShift != controls_.leftDragsLight ? Drag::Light : Drag::Orbit;
-        if (const LightModel* light = model_.editedLight()) dragTarget_ = lightTarget(light->pose, model_.centre());
+        if (LightModel* light = model_.editedLight()) lightPath_ = model_.pathOf(*light);
     }
     if (onPicture && (ImGui::IsMouseClicked(ImGuiMouseButton_Right) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle))) drag_ = Drag::Pan;
     const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
@@ -126,7 +126,7 @@ void App::handleMouse(const Rectangle& shown) {
         LightModel* light = model_.editedLight();
         if (drag_ == Drag::Orbit) orbit(model_.camera, move);
         else if (drag_ == Drag::Pan) pan(model_.camera, move);
-        else if (light) dragLight(light->pose, dragTarget_, model_.camera, move);
+        else if (light) dragLight(light->pose, lightPath_, model_.camera, move);
         if (drag_ == Drag::Light) editor_.lightMoved(model_.light);
         else editor_.cameraMoved();
     }

@@ -39,7 +39,7 @@ class App {
     Editor editor_;
 
     Drag drag_ = Drag::None;
-    glm::dvec3 dragTarget_{0};              // of the light that is dragged
+    LightPath lightPath_;                   // of the light that is dragged
     std::optional<connection::Frame> frame_;  // taken, not yet on the screen
     int askedWidth_ = 0, askedHeight_ = 0, wantedWidth_ = 0, wantedHeight_ = 0;
     double wantedSinceS_ = 0.0, savingSinceS_ = -1.0;

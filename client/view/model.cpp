@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace caustream::view {
 namespace {
@@ -47,6 +48,17 @@ LightModel* Model::editedLight() {
 glm::dvec3 Model::centre() const {
     const auto& box = scene.casterBounds ? scene.casterBounds : scene.bounds;
     return box ? 0.5 * (vec(box->min) + vec(box->max)) : camera.target;
+}
+
+LightPath Model::pathOf(LightModel& edited) const {
+    const bool placed = edited.type != protocol::LightType::Directional;
+    if (!placed) edited.pose.position = centre() - edited.pose.direction;
+    LightPath path{.target = lightTarget(edited.pose, centre())};
+    path.distance = glm::distance(path.target, edited.pose.position);
+    if (!placed || !scene.bounds) return path;
+    const Room room{vec(scene.bounds->min), vec(scene.bounds->max)};
+    if (room.holds(edited.pose.position) && room.holds(path.target)) path.room = room;
+    return path;
 }
 
 void Model::say(bool error, std::string text, double nowS) {

@@ -62,6 +62,8 @@ struct Model {
     void say(bool error, std::string text, double nowS);
     // The middle of the casters, or of the scene.
     glm::dvec3 centre() const;
+    // What a drag moves the light along; gives a directional light a place to be moved from.
+    LightPath pathOf(LightModel& edited) const;
 
    private:
     bool takeState(const protocol::StateMessage& message, double nowS);

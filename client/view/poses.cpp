@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <numbers>
 
 namespace caustream::view {
@@ -12,7 +13,16 @@ constexpr double kOrbitPerHeight = std::numbers::pi;         // half a turn for 
 constexpr double kPole = 0.02;                               // rad: how near to straight up or down the eye may come
 constexpr double kZoomPerStep = 0.88;
 constexpr double kLightPerHeight = 2.0;                      // times the distance from its target
+constexpr double kWallShare = 0.97;                          // of the way to a wall that a light may go
 constexpr glm::dvec3 kWorldUp{0, 1, 0};
+
+// Along the unit vector `direction` from a point in the room, a little short of the wall.
+double distanceToWall(const glm::dvec3& from, const glm::dvec3& direction, const Room& room) {
+    double nearest = 1e9;
+    for (int i = 0; i < 3; ++i)
+        if (direction[i] != 0.0) nearest = std::min(nearest, ((direction[i] > 0.0 ? room.max[i] : room.min[i]) - from[i]) / direction[i]);
+    return kWallShare * nearest;
+}
 
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180.0;
@@ -57,8 +67,12 @@ void zoom(Pose& pose, double steps) {
     pose.eye = pose.target + (pose.eye - pose.target) * std::pow(kZoomPerStep, std::clamp(steps, -20.0, 20.0));
 }
 
-void dragLight(LightPose& light, glm::dvec3 target, const Pose& camera, glm::dvec2 move) {
-    const glm::dvec3 offset = light.position - target;
+bool Room::holds(const glm::dvec3& point) const {
+    return glm::all(glm::greaterThan(point, min)) && glm::all(glm::lessThan(point, max));
+}
+
+void dragLight(LightPose& light, const LightPath& path, const Pose& camera, glm::dvec2 move) {
+    const glm::dvec3 offset = light.position - path.target;
     const double distance = glm::length(offset);
     if (distance < 1e-9) return;
     const glm::dvec3 right = camera.right();
@@ -66,8 +80,10 @@ void dragLight(LightPose& light, glm::dvec3 target, const Pose& camera, glm::dve
     const bool overhead = std::abs(offset.y) > 0.6 * distance;
     const glm::dvec3 away = overhead ? glm::normalize(glm::cross(kWorldUp, right)) : kWorldUp;
     const glm::dvec3 moved = offset + kLightPerHeight * distance * (move.x * right - move.y * away);
-    light.position = target + glm::normalize(moved) * distance;
-    light.direction = glm::normalize(target - light.position);
+    const glm::dvec3 from = glm::normalize(moved);
+    const double reach = path.room ? std::min(path.distance, distanceToWall(path.target, from, *path.room)) : path.distance;
+    light.position = path.target + from * reach;
+    light.direction = -from;
 }
 
 glm::dvec3 lightTarget(const LightPose& light, glm::dvec3 centre) {

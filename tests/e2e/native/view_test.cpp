@@ -1,0 +1,132 @@
+// caustream-view under Xvfb, with a real mouse: what is on the screen, and where the caustic goes when the light is dragged.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "display.h"
+
+namespace caustream::e2e {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kWidth = 960, kHeight = 600;
+constexpr int kPictureWidth = kWidth - 350;  // the panel has the rest
+
+Pixels pictureOf(const Pixels& screen) {
+    Pixels out{kPictureWidth, screen.height, 3, {}};
+    for (int y = 0; y < screen.height; ++y) {
+        const auto* row = &screen.values[static_cast<std::size_t>(3 * y * screen.width)];
+        out.values.insert(out.values.end(), row, row + 3 * kPictureWidth);
+    }
+    return out;
+}
+
+double difference(const Pixels& a, const Pixels& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.values.size(); ++i) sum += std::abs(a.values[i] - b.values[i]);
+    return sum / static_cast<double>(a.values.size());
+}
+
+// The caustic: nothing in the sphere's room is as bright.
+Centroid causticOf(const Pixels& picture) {
+    return centroidAbove(picture, picture.quantile(0.998) - 0.5);
+}
+
+class View : public testing::Test {
+   protected:
+    // The picture once it has stood still for a second, and fits; the last one after a minute and a half.
+    template <class Fits>
+    Pixels settled(const Fits& fits) {
+        Pixels before = pictureOf(display_.look());
+        int still = 0;
+        for (int i = 0; i < 180 && still < 3; ++i) {
+            std::this_thread::sleep_for(500ms);
+            Pixels now = pictureOf(display_.look());
+            still = difference(before, now) < 0.05 && fits(now) ? still + 1 : 0;
+            before = std::move(now);
+        }
+        return before;
+    }
+    static bool isLit(const Pixels& picture) {
+        return picture.quantile(0.998) > 180.0 && picture.quantile(0.3) > 5.0;
+    }
+
+    Server server_;
+    Display display_{kWidth, kHeight};
+    TemporaryFolder folder_;
+    Background view_{CAUSTREAM_BIN "/caustream-view",
+                     {"--url", server_.url(), "--scene", "sphere", "--save-folder", folder_.path, "--width", std::to_string(kWidth),
+                      "--height", std::to_string(kHeight)},
+                     display_.environment()};
+};
+
+TEST_F(View, ADraggedLightMovesTheCausticTheOtherWay) {
+    const Pixels first = settled(isLit);
+    ASSERT_TRUE(isLit(first)) << "no picture came";
+    const Centroid start = causticOf(first);
+
+    // The light goes right, what the sphere gathers goes left.
+    display_.drag(kPictureWidth / 2, kHeight / 2, 70, 0, "shift");
+    const Pixels second = settled([&](const Pixels& picture) { return difference(picture, first) > 0.5; });
+    const Centroid moved = causticOf(second);
+    EXPECT_LT(moved.x, start.x - 12.0);
+
+    // S saves the picture that is on the screen: the same light, without JPEG and the screen's scaling.
+    display_.hand({"key", "s"});
+    const std::string saved = folder_ / "caustream-sphere-1.png";
+    for (int i = 0; i < 120 && !std::filesystem::exists(saved); ++i) std::this_thread::sleep_for(500ms);
+    std::this_thread::sleep_for(500ms);
+    const Pixels file = readPng(saved);
+    const Centroid inFile = causticOf(file);
+    EXPECT_NEAR(inFile.x / file.width, moved.x / kPictureWidth, 0.04);
+    EXPECT_NEAR(inFile.y / file.height, moved.y / kHeight, 0.04);
+
+    // And back; then the camera: what stood in the middle still does, what lay off it went aside.
+    display_.drag(kPictureWidth / 2, kHeight / 2, -70, 0, "shift");
+    const Pixels third = settled([&](const Pixels& picture) { return difference(picture, second) > 0.5; });
+    EXPECT_NEAR(causticOf(third).x, start.x, 12.0);
+
+    display_.drag(kPictureWidth / 2, kHeight / 2, 0, 60);
+    const Pixels orbited = settled([&](const Pixels& picture) { return difference(picture, third) > 1.0; });
+    EXPECT_GT(difference(orbited, third), 1.0);
+}
+
+TEST_F(View, StaysSmallAndEndsWhenAsked) {
+    ASSERT_TRUE(isLit(settled(isLit))) << "no picture came";
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    std::ifstream status("/proc/" + std::to_string(view_.pid()) + "/status");
+    std::stringstream text;
+    text << status.rdbuf();
+    const auto at = text.str().find("VmRSS:");
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_LT(std::stoi(text.str().substr(at + 6)), 150 * 1024) << "kB resident";
+#endif
+    display_.hand({"mousemove", "200", "200"});
+    display_.hand({"key", "Escape"});
+    EXPECT_EQ(view_.stop(0), 0) << "signal 0 only waits";
+}
+
+TEST(ViewArguments, AreCheckedInOneLine) {
+    const auto expectOneLine = [](const Result& result, const std::string& part) {
+        EXPECT_EQ(result.exitCode, 1);
+        EXPECT_THAT(result.err, testing::StartsWith("caustream-view: "));
+        EXPECT_THAT(result.err, testing::HasSubstr(part));
+        EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    };
+    const std::string view = CAUSTREAM_BIN "/caustream-view";
+    expectOneLine(run(view, {"--url", "nonsense://"}), "http://host:port");
+    expectOneLine(run(view, {"missing.glb"}), "missing.glb");
+    expectOneLine(run(view, {"--no-such-option"}), "--no-such-option");
+    expectOneLine(run(view, {}, {{"DISPLAY", ":65000"}, {"WAYLAND_DISPLAY", ""}}), "display");
+    EXPECT_EQ(run(view, {"--help"}).exitCode, 0);
+}
+
+}  // namespace
+}  // namespace caustream::e2e
