@@ -6,7 +6,7 @@
 
 #include "gl/uniforms.h"
 #include "render/light_uniforms.h"
-#include "../shaders/shared/layout.h"
+#include "shaders/shared/layout.h"
 
 namespace caustream::render {
 
