@@ -67,6 +67,15 @@ bool Buffer::ensure(std::size_t bytes, GLbitfield flags, std::string_view text) 
     return true;
 }
 
+void BufferTexture::view(const Buffer& buffer, GLenum format) {
+    if (!*this) {
+        GLuint name = 0;
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+        GlName::operator=(GlName(name));
+    }
+    glTextureBuffer(get(), format, buffer.get());
+}
+
 Framebuffer makeFramebuffer(std::string_view text, std::initializer_list<GLuint> colors, GLuint depth) {
     GLuint name = 0;
     glCreateFramebuffers(1, &name);

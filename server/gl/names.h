@@ -77,6 +77,13 @@ class Buffer : public GlName<deleteBuffer> {
     std::size_t bytes_ = 0;
 };
 
+// A buffer's contents as a one-dimensional texture.
+class BufferTexture : public GlName<deleteTexture> {
+   public:
+    // Reads `buffer` as texels of `format` from now on; the buffer must outlive the use.
+    void view(const Buffer& buffer, GLenum format);
+};
+
 // Framebuffer over colour attachments and an optional depth attachment; throws Error when incomplete.
 Framebuffer makeFramebuffer(std::string_view label, std::initializer_list<GLuint> colors, GLuint depth = 0);
 // Empty: draws that need no vertex data need one bound all the same.

@@ -160,7 +160,7 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
                           .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius)},
                          {map_, ledger_});
     });
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back
 }
 
 void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {

@@ -6,7 +6,8 @@ MapResolve::MapResolve(gl::ShaderLibrary& shaders)
     : shaders_(shaders), linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "map resolve")) {}
 
 void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger) {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindMap, in.map.get());
+    texels_.view(in.map, GL_RGB32UI);
+    glBindTextureUnit(1, texels_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, ledger.get());
     glBindSampler(0, linear_.get());
     for (int level = in.levels - 1; level >= 0; --level) {
@@ -25,7 +26,8 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
             .set("u_fluxPerFixed", static_cast<float>(in.fluxPerFixed))
             .set("u_luminance", static_cast<float>(in.ledgerPerFixed))
             .set("u_hasAbove", level + 1 < in.levels)
-            .set("u_above", 0);
+            .set("u_above", 0)
+            .set("u_map", 1);
         if (level + 1 < in.levels) glBindTextureUnit(0, coarse_[static_cast<std::size_t>(level) + 1].get());
         glBindImageTexture(0, out.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
         const int perGroup = layout::kGroupSize * layout::kScanTexels;

@@ -29,6 +29,7 @@ class MapResolve {
    private:
     gl::ShaderLibrary& shaders_;
     gl::Sampler linear_;
+    gl::BufferTexture texels_;                              // the map as RGB32UI
     std::array<gl::Texture, layout::kMostLevels> coarse_;   // RGBA32F XYZ, by level; the finest goes to the caller
 };
 
