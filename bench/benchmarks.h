@@ -7,7 +7,7 @@ namespace caustream::bench {
 struct FrameOptions {
     std::string scene = "sphere", gpu = "auto";
     int frames = 30;            // counted, after a warm-up of a sixth as many
-    int photonGrid = 192;       // about 29,000 photons on the sphere
+    int photonGrid = 180;       // about 25,500 photons on the sphere
     int size = 512;             // of picture and map
 };
 // Whole frames through the pipeline after a light move and after a camera move: 1, 7 and 21 wavelengths, and the sphere

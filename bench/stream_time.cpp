@@ -37,7 +37,7 @@ int streamTime(const StreamOptions& options) {
     if (!address) throw Error(address.error());
     connection::Connection connection({.address = *address, .clientName = "caustream-bench"});
     const auto set = connection.update({{"scene", {"builtin", options.scene}},
-                                        {"transport", {{"photon_grid", 192}, {"wavelengths", 7}, {"map_size", 512}}},
+                                        {"transport", {{"photon_grid", 180}, {"wavelengths", 7}, {"map_size", 512}}},
                                         {"stream", {{"width", 512}, {"height", 512}, {"max_fps", 240}}}});
     if (!set) throw Error(set.error().message);
     connection.startStream(false);

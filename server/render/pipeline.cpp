@@ -227,13 +227,16 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
         glass.thinWalled = material.thinWalled;
         glass.tint = glm::vec3(material.baseColor);
         const optics::WavelengthSet& set = maps.wavelengths;
+        const Transport& transport = request.transport;
         for (std::size_t i = 0; i < set.nm.size(); ++i) {
             glass.wavelengths.push_back({static_cast<float>(optics::refractiveIndex(material.dispersion, set.nm[i]) / scene.outsideIndex),
                                          glm::vec3(set.xyzToRgb * set.xyz[i]), static_cast<float>(material.absorption.at(set.nm[i]))});
         }
         timer.stage("dispersive_refraction", [&] {
             refraction.run({view, front, back, box, object->bounds, depth, glass, lighting},
-                           {request.transport.backSteps, request.transport.receiverSteps, request.still ? 6 : 2, request.still}, color);
+                           request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true}
+                                         : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false},
+                           color);
         });
     }
 }
