@@ -132,7 +132,8 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
         // A photon counts only where its caster is the first thing that its ray meets.
         const auto others = [&] {
             in.gpu.drawWhere([&](const scene::Object& object) {
-                return &object != emitter.caster && !in.scene.materials[static_cast<std::size_t>(object.material)].thinWalled;
+                const scene::Material& material = in.scene.materials[static_cast<std::size_t>(object.material)];
+                return &object != emitter.caster && (!material.caster || refracts(material, in.scene.outsideIndex));
             });
         };
         casterLayers_.run({in.gpu, *emitter.caster, emitter.emission, front.x, front.y, others}, CasterLayers::Side::Front, front_);
@@ -234,7 +235,7 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
     if (out.hasShadow) {
         out.shadowView = shadowView(in.scene, in.light);
         timer.stage("receiver_depth", [&] {
-            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, 1024, true}, out.shadow);
+            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, 1024, true, in.scene.outsideIndex}, out.shadow);
         });
     }
     if (!in.plan.runs("photon_trace")) return;

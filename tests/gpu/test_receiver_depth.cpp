@@ -64,6 +64,8 @@ TEST_F(ReceiverDepthTest, CastersOnlyForShadowsAndThinWallsNever) {
     scene.addQuad(scene.material(pane), {-9, -9, 2}, {18, 0, 0}, {0, 18, 0});
     EXPECT_NEAR(depth(scene, view_)[kCentre], view_.nearM / 3.0f, 1e-8f);
     EXPECT_NEAR(depth(scene, view_, true)[kCentre], view_.nearM / 2.0f, 1e-8f);
+    scene.materials[1].dispersion = optics::ConstantIndex{1.0};   // the outside's: nothing happens to light there
+    EXPECT_NEAR(depth(scene, view_, true)[kCentre], view_.nearM / 3.0f, 1e-8f);
 }
 
 TEST_F(ReceiverDepthTest, SeenFromBehindAReceiverIsThereToo) {

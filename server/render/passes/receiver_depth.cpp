@@ -1,5 +1,7 @@
 #include "render/passes/receiver_depth.h"
 
+#include "render/plan.h"
+
 namespace caustream::render {
 
 void ReceiverDepth::run(const Inputs& in, gl::Texture& depth) {
@@ -22,7 +24,7 @@ void ReceiverDepth::draw(const Inputs& in) {
     in.scene.bind();
     in.scene.drawWhere([&](const scene::Object& object) {
         const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
-        return !material.caster || (in.casters && !material.thinWalled);
+        return !material.caster || (in.casters && refracts(material, in.outsideIndex));
     });
 }
 

@@ -14,7 +14,8 @@ class ReceiverDepth {
         const std::vector<scene::Material>& materials;
         const View& view;
         int size;                 // texels a side
-        bool casters = false;     // also the casters that cast a shadow (not the thin-walled)
+        bool casters = false;     // also the casters that cast a shadow: those that bend light
+        double outsideIndex = 1.0;
     };
 
     explicit ReceiverDepth(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
