@@ -233,15 +233,20 @@ void main() {
     vec3 landed[kMostWavelengths];           // uv in the inner map, flux; no flux: nowhere
     float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0, lastWay = way;
     uvec2 unsettled = uvec2(0u);
+    int passed = kUnsettled;
+    bool met = false;
     for (int k = u_wavelengths - 1; k >= 0; --k) {
         float weight = u_glass[k].z;
-        flux = entry.flux;
-        onCasters += weight * flux;
-        float guess = way + (way - lastWay);
-        lastWay = way;
-        way = guess;
-        int passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
-        bool met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
+        onCasters += weight * entry.flux;
+        // Glass that does not differ has no other way: white stays white at the rim too, where steps hardly settle.
+        if (k == u_wavelengths - 1 || u_glass[k].xy != u_glass[k + 1].xy) {
+            float guess = way + (way - lastWay);
+            lastWay = way;
+            way = guess;
+            flux = entry.flux;
+            passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
+            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
+        }
         landed[k] = vec3(at, met ? flux : 0.0);
         // One step may reflect a ray that would leave: it is searched again, unless the longest is reflected as well.
         if (met || (passed == kTotal && longest == kTotal)) {
