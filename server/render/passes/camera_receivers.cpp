@@ -7,6 +7,7 @@
 
 #include "gl/uniforms.h"
 #include "render/light_uniforms.h"
+#include "render/passes/camera_casters.h"
 
 namespace caustream::render {
 
@@ -23,6 +24,12 @@ std::vector<gl::Flag> flags(bool shadow, bool map, bool texture, bool full) {
 
 // Whether a material needs more than Lambert under one light: a highlight. Roughness 1 has none worth its price.
 bool glossy(const scene::Material& material) { return material.roughness < 0.95f || material.metallic > 0.0f; }
+
+// Whether any of the object can be in a light's view; what is not needs no lookup there.
+bool inView(const scene::Object& object, const View& view) {
+    const int grid = 256;  // the answer errs by one cell, to the safe side
+    return !projectedBox(object.bounds, view, grid, grid).empty();
+}
 
 // The square around the outer cone, which a cookie spans; upright in the world.
 View cookieView(const scene::Light& light) {
@@ -108,9 +115,11 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
     for (const scene::Object& object : in.scene.geometry().objects) {
         const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
         if (material.caster) continue;
+        const bool shadow = lighting.hasShadow && inView(object, lighting.shadowView);
+        const bool lit = map && inView(object, lighting.outerView);
         const bool full = hasCookie || lighting.lights.size() > 1 || glossy(material);
         const GLuint program = shaders_.program(
-            "camera_receivers", flags(lighting.hasShadow, map, material.baseColorTexture >= 0, full));
+            "camera_receivers", flags(shadow, lit, material.baseColorTexture >= 0, full));
         if (std::find(ready.begin(), ready.end(), program) == ready.end()) {
             setFrame(in, program);
             ready.push_back(program);
