@@ -176,14 +176,14 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
     for (const Emitter& emitter : emitters) traceCaster(in, emitter, 0, out.wavelengths.nm.size(), fixedPerFlux, timer, out);
 
     timer.stage("map_resolve", [&] {
-        const auto resolve = [&](const View& view, int side, int sideLevels, std::size_t first, gl::Texture& concentration) {
-            mapResolve_.run({.map = map_, .view = view, .size = side, .levels = sideLevels, .firstTexel = static_cast<int>(first),
+        const auto resolve = [&](const View& view, const gl::Texture& receivers, int side, int sideLevels, std::size_t first, gl::Texture& concentration) {
+            mapResolve_.run({.map = map_, .view = view, .receivers = receivers, .size = side, .levels = sideLevels, .firstTexel = static_cast<int>(first),
                              .xyzToRgb = glm::mat3(out.wavelengths.xyzToRgb), .fluxPerFixed = 1.0 / fixedPerFlux,
                              .ledgerPerFixed = kFixedRange / totalFlux_ / fixedPerFlux},
                             concentration, ledger_);
         };
-        resolve(out.mapView, size, levels, 0, out.map);
-        resolve(out.outerView, kOuterMapSize, 1, texels, out.outerMap);
+        resolve(out.mapView, receivers_, size, levels, 0, out.map);
+        resolve(out.outerView, outerReceivers_, kOuterMapSize, 1, texels, out.outerMap);
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                     GL_TEXTURE_UPDATE_BARRIER_BIT);   // map -> camera_receivers, gap_fill, read-back

@@ -22,7 +22,7 @@ struct Lighting {
     bool hasMap = false;
     View mapView, outerView;             // of the inner and the coarse outer spectral map: one eye, one orientation
     GLuint map = 0, outerMap = 0;        // RGBA32F, rgb concentration (1 = as bright as direct light), uv of their view;
-                                         // a layer value of the receiver there, 1 unknown. Outer: what the inner misses
+                                         // a layer value of the receiver there (1 unknown). Outer: what the inner misses
 };
 
 }  // namespace caustream::render

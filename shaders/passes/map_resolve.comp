@@ -14,6 +14,7 @@ uniform bool u_hasAbove;
 uniform int u_firstTexel;            // of this level in the buffer
 #if FINEST
 uniform View u_view;
+uniform sampler2D u_receivers;      // layer values of the view; they go into alpha
 uniform mat3 u_xyzToRgb;
 uniform float u_fluxPerFixed;
 uniform float u_luminance;           // ledger units per fixed-point unit of Y
@@ -31,7 +32,7 @@ void main() {
 #if FINEST
         deposited += xyz.y;
         vec3 rgb = u_xyzToRgb * xyz * (u_fluxPerFixed / texelExtent(u_view, uv, 1.0 / vec2(size)));
-        imageStore(u_out, texel, vec4(rgb, 1.0));
+        imageStore(u_out, texel, vec4(rgb, texelFetch(u_receivers, texel, 0).x));
 #else
         imageStore(u_out, texel, vec4(xyz, 1.0));
 #endif

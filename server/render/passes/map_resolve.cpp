@@ -10,6 +10,7 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
     glBindTextureUnit(1, texels_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, ledger.get());
     glBindSampler(0, linear_.get());
+    glBindTextureUnit(2, in.receivers.get());
     for (int level = in.levels - 1; level >= 0; --level) {
         const int size = in.size >> level;
         int first = in.firstTexel;
@@ -27,7 +28,8 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
             .set("u_luminance", static_cast<float>(in.ledgerPerFixed))
             .set("u_hasAbove", level + 1 < in.levels)
             .set("u_above", 0)
-            .set("u_map", 1);
+            .set("u_map", 1)
+            .set("u_receivers", 2);
         if (level + 1 < in.levels) glBindTextureUnit(0, coarse_[static_cast<std::size_t>(level) + 1].get());
         glBindImageTexture(0, out.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
         const int perGroup = layout::kGroupSize * layout::kScanTexels;

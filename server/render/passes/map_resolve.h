@@ -15,6 +15,7 @@ class MapResolve {
     struct Inputs {
         const gl::Buffer& map;            // photon_trace, XYZ
         const View& view;
+        const gl::Texture& receivers;     // receiver_depth of that view, `size` texels a side
         int size;                         // texels a side of the finest level
         int levels;                       // of the pyramid, 1..kMostLevels, each half as many texels a side
         int firstTexel;                   // of the finest level in the buffer; the others follow
@@ -23,7 +24,7 @@ class MapResolve {
     };
 
     explicit MapResolve(gl::ShaderLibrary& shaders);
-    // Fills `concentration` (RGBA32F; rgb 1 = as bright as direct light) and books the deposited flux in `ledger`.
+    // Fills `concentration` (RGBA32F; rgb 1 = as bright as direct light, a the receiver's layer value) and books the deposited flux in `ledger`.
     void run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger);
 
    private:
