@@ -12,7 +12,8 @@ std::string Address::text() const {
 tl::expected<Address, std::string> parseAddress(std::string_view url) {
     const std::string shown(url);
     const auto fail = [&](const std::string& why) {
-        return tl::make_unexpected("address \"" + shown + "\": " + why + "; write http://host:port or ws://host:port/ws");
+        return tl::make_unexpected("address \"" + shown + "\": " + why +
+                                   "; write http://host:port or ws://host:port/ws");
     };
     if (const auto scheme = url.find("://"); scheme != url.npos) {
         const auto name = url.substr(0, scheme);

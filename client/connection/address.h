@@ -10,8 +10,8 @@ inline constexpr const char* kDefaultUrl = "http://127.0.0.1:9720";  // of a ser
 
 struct Address {
     std::string host;
-    int port = 0;       // 1..65535
-    std::string path;   // with its query, "/ws?srv=a1"
+    int port = 0;              // 1..65535
+    std::string path;          // with its query, "/ws?srv=a1"
     std::string text() const;  // "ws://host:port/path"
 };
 

@@ -47,7 +47,8 @@ tl::expected<std::uint32_t, protocol::DecodeError> Connection::input(const Json&
         return tl::make_unexpected(applied.error());
     impl_->confirmed.merge_patch(patch);
     const std::uint32_t seq = ++impl_->inputSeq;
-    if (impl_->ready) impl_->socket->sendText(protocol::encode(protocol::Input{.seq = seq, .tUs = nowUs(), .patch = patch}));
+    if (impl_->ready)
+        impl_->socket->sendText(protocol::encode(protocol::Input{.seq = seq, .tUs = nowUs(), .patch = patch}));
     return seq;
 }
 
@@ -59,7 +60,8 @@ Json Connection::document() const {
 void Connection::showFile(std::vector<std::uint8_t> glb) {
     auto bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(glb));
     impl_->socket->post([impl = impl_.get(), bytes] {
-        Upload::Wire wire{[impl] { return impl->nextId(); }, [impl](const std::string& text) { impl->socket->sendText(text); },
+        Upload::Wire wire{[impl] { return impl->nextId(); },
+                          [impl](const std::string& text) { impl->socket->sendText(text); },
                           [impl](auto head, auto payload) { impl->socket->sendBinary(head, payload); }};
         impl->upload = std::make_unique<Upload>(bytes, std::move(wire));
         impl->uploadShown = false;
@@ -71,7 +73,8 @@ void Connection::startStream(bool stats) {
     std::scoped_lock lock(impl_->mutex);
     impl_->streaming = true;
     impl_->statsWanted = stats;
-    if (impl_->ready) impl_->socket->sendText(protocol::encode(protocol::StreamStart{.id = ++impl_->lastId, .stats = stats}));
+    if (impl_->ready)
+        impl_->socket->sendText(protocol::encode(protocol::StreamStart{.id = ++impl_->lastId, .stats = stats}));
 }
 
 void Connection::pauseStream() {

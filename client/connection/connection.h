@@ -22,24 +22,24 @@ struct Options {
     Address address;
     std::string clientName;
     std::optional<std::string> token;
-    std::uint32_t maxInflight = 2;    // frames under way, 1..8
-    bool strict = false;              // a field that the protocol does not know is an error
-    bool keepEncoded = false;         // fill Frame::encoded
-    std::function<void()> wake;       // something is new; called on the network thread, must not block
+    std::uint32_t maxInflight = 2;  // frames under way, 1..8
+    bool strict = false;            // a field that the protocol does not know is an error
+    bool keepEncoded = false;       // fill Frame::encoded
+    std::function<void()> wake;     // something is new; called on the network thread, must not block
 };
 
 // Every function may be called from any one thread.
 class Connection {
-   public:
+ public:
     explicit Connection(Options options);
     ~Connection();
 
-    // Merges a patch (RFC 7396) into the document and sends it. The error: what the protocol has against it; then nothing
-    // changed. Otherwise the id that the server's Ok or ErrorMessage will carry; 0 while there is no connection, as the
-    // whole document goes out when there is one.
+    // Merges a patch (RFC 7396) into the document and sends it. The error: what the protocol has against it; then
+    // nothing changed. Otherwise the id that the server's Ok or ErrorMessage will carry; 0 while there is no
+    // connection, as the whole document goes out when there is one.
     tl::expected<std::uint32_t, protocol::DecodeError> update(const protocol::Json& patch);
-    // The same for what a hand moves (`camera`, `lights`): no reply, the newest wins. The error as above, else its number,
-    // which comes back in the header of the first frame that shows it.
+    // The same for what a hand moves (`camera`, `lights`): no reply, the newest wins. The error as above, else its
+    // number, which comes back in the header of the first frame that shows it.
     tl::expected<std::uint32_t, protocol::DecodeError> input(const protocol::Json& patch);
     // What was asked for so far, without what the server refused.
     protocol::Json document() const;
@@ -60,7 +60,7 @@ class Connection {
     // Until something is new, at most this long.
     void wait(std::chrono::milliseconds longest);
 
-   private:
+ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

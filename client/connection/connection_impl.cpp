@@ -8,7 +8,8 @@ namespace caustream::connection {
 namespace {
 
 constexpr std::uint64_t kPingEveryUs = 1'000'000;
-constexpr std::uint64_t kDeadUs = 12'000'000;  // silence, though there were pings: the connection is dead and no one said so
+constexpr std::uint64_t kDeadUs =
+    12'000'000;  // silence, though there were pings: the connection is dead and no one said so
 
 }  // namespace
 
@@ -53,7 +54,8 @@ void Connection::Impl::hello() {
     welcomed = false;
     lastHeardUs = nowUs();
     helloId = nextId();
-    protocol::Hello message{.id = helloId, .token = options.token, .clientName = options.clientName, .clientVersion = "0.1.0"};
+    protocol::Hello message{
+        .id = helloId, .token = options.token, .clientName = options.clientName, .clientVersion = "0.1.0"};
     message.caps = {"jpeg", "png", "raw", "f16", "f32"};
     message.maxInflight = options.maxInflight;
     message.strict = options.strict;
@@ -84,7 +86,8 @@ void Connection::Impl::replay() {
             unanswered[++lastId] = document;
             messages.push_back(protocol::encode(protocol::Update{.id = lastId, .patch = document}));
         }
-        if (streaming) messages.push_back(protocol::encode(protocol::StreamStart{.id = ++lastId, .stats = statsWanted}));
+        if (streaming)
+            messages.push_back(protocol::encode(protocol::StreamStart{.id = ++lastId, .stats = statsWanted}));
         ready = true;
     }
     for (const auto& message : messages) socket->sendText(message);

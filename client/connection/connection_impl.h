@@ -19,12 +19,12 @@ struct Connection::Impl {
 
     mutable std::mutex mutex;
     std::condition_variable news;
-    bool isNew = false;                          // guarded by mutex, like all down to the next blank line
+    bool isNew = false;  // guarded by mutex, like all down to the next blank line
     std::vector<Event> events;
     std::uint32_t lastId = 0, inputSeq = 0;
-    Json confirmed = Json::object();             // what the server took
-    std::map<std::uint32_t, Json> unanswered;    // patches by the id of their update
-    bool ready = false;                          // welcomed, and the document is on its way
+    Json confirmed = Json::object();           // what the server took
+    std::map<std::uint32_t, Json> unanswered;  // patches by the id of their update
+    bool ready = false;                        // welcomed, and the document is on its way
     bool streaming = false, statsWanted = false;
 
     // The network thread only.
@@ -35,10 +35,10 @@ struct Connection::Impl {
     std::shared_ptr<const protocol::StreamInfo> info;
     std::map<std::uint32_t, std::string> expected;  // requested frames that were announced: number and map hash
     std::unique_ptr<Upload> upload;
-    bool uploadShown = false;                       // its scene was asked for, once
+    bool uploadShown = false;  // its scene was asked for, once
     bool open = false, welcomed = false;
     std::uint64_t lastPingUs = 0, lastHeardUs = 0;
-    int comeBackMs = -1;                            // what a goaway asked for
+    int comeBackMs = -1;  // what a goaway asked for
 
     std::uint32_t nextId();
     Json documentLocked() const;
@@ -56,7 +56,7 @@ struct Connection::Impl {
     void onError(const protocol::ErrorMessage& error);
     void afterUpload();
 
-    std::unique_ptr<Socket> socket;                 // set before its thread starts; the last member, so it ends first
+    std::unique_ptr<Socket> socket;  // set before its thread starts; the last member, so it ends first
 };
 
 }  // namespace caustream::connection

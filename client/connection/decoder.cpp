@@ -32,7 +32,8 @@ Result decodeJpeg(tjhandle decoder, const FrameHeader& header, std::span<const s
     Image image = emptyImage(header);
     image.data.resize(image.samples());
     // A warning (a truncated last block, say) still gives a picture; only errors do not.
-    if (tjDecompress2(decoder, payload.data(), size, image.data.data(), width, 0, height, TJPF_RGB, TJFLAG_FASTDCT) != 0 &&
+    if (tjDecompress2(decoder, payload.data(), size, image.data.data(), width, 0, height, TJPF_RGB, TJFLAG_FASTDCT) !=
+            0 &&
         tjGetErrorCode(decoder) == TJERR_FATAL)
         return refused(tjGetErrorStr2(decoder));
     return image;

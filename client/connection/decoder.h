@@ -11,12 +11,12 @@ namespace caustream::connection {
 
 // One per thread: keeps the JPEG decoder's tables.
 class Decoder {
-   public:
+ public:
     Decoder();
     // The error is a sentence; what does not fit the header is refused.
     tl::expected<Image, std::string> decode(const protocol::FrameHeader& header, std::span<const std::uint8_t> payload);
 
-   private:
+ private:
     std::unique_ptr<void, int (*)(void*)> jpeg_;
 };
 

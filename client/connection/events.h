@@ -12,7 +12,7 @@
 namespace caustream::connection {
 
 struct Disconnected {
-    int closeCode = 0;       // the server's; 0: the connection could not be made, or broke
+    int closeCode = 0;  // the server's; 0: the connection could not be made, or broke
     std::string why;
     bool willRetry = true;
 };
@@ -22,7 +22,7 @@ struct RoundTrip {
 struct UploadProgress {
     std::uint64_t sent = 0, size = 0;  // bytes that have arrived, of how many
 };
-struct BadMessage {          // what the server said could not be understood, or a frame not decoded
+struct BadMessage {  // what the server said could not be understood, or a frame not decoded
     std::string why;
 };
 

@@ -51,7 +51,7 @@ float halfToFloat(std::uint16_t half) {
         const float value = std::ldexp(static_cast<float>(mantissa), -24);  // zero and subnormal
         return sign ? -value : value;
     }
-    const std::uint32_t wide = exponent == 31 ? 255u : exponent + 112u;     // infinity and NaN keep their kind
+    const std::uint32_t wide = exponent == 31 ? 255u : exponent + 112u;  // infinity and NaN keep their kind
     return std::bit_cast<float>(sign | (wide << 23) | (mantissa << 13));
 }
 
@@ -105,8 +105,8 @@ Image toPicture(const Image& image, float white) {
     for (std::size_t i = 0; i < texels; ++i) {
         const auto colour = colourOf(&values[i * static_cast<std::size_t>(image.bands)], image.bands);
         for (std::size_t c = 0; c < 3; ++c)
-            out.data[3 * i + c] = linear ? srgbByte(colour[c] / white)
-                                         : static_cast<std::uint8_t>(std::lround(255.0f * colour[c]));
+            out.data[3 * i + c] =
+                linear ? srgbByte(colour[c] / white) : static_cast<std::uint8_t>(std::lround(255.0f * colour[c]));
     }
     return out;
 }

@@ -9,10 +9,10 @@
 namespace caustream::connection {
 
 struct Image {
-    int width = 0, height = 0, bands = 0;               // bands: 3 for colour, or one per wavelength
-    protocol::Sample sample = protocol::Sample::U8;     // U8: sRGB; F16 and F32: linear
-    float scale = 1.0f;                                 // value = sample * scale, F16 and F32 only
-    std::vector<std::uint8_t> data;                     // interleaved, rows top to bottom, native byte order
+    int width = 0, height = 0, bands = 0;            // bands: 3 for colour, or one per wavelength
+    protocol::Sample sample = protocol::Sample::U8;  // U8: sRGB; F16 and F32: linear
+    float scale = 1.0f;                              // value = sample * scale, F16 and F32 only
+    std::vector<std::uint8_t> data;                  // interleaved, rows top to bottom, native byte order
 
     std::size_t samples() const {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(bands);
@@ -29,8 +29,8 @@ std::vector<float> toFloats(const Image& image);
 // image is dark throughout. Not finite values are left out.
 float whiteLevel(const std::vector<float>& linear, int bands, double fraction = 0.995);
 
-// Three bands of sRGB bytes. Linear images are divided by `white` (<= 0: their whiteLevel) and clipped; one band is shown
-// as grey, and of many bands the thirds are averaged, last (longest wavelengths) to red.
+// Three bands of sRGB bytes. Linear images are divided by `white` (<= 0: their whiteLevel) and clipped; one band is
+// shown as grey, and of many bands the thirds are averaged, last (longest wavelengths) to red.
 Image toPicture(const Image& image, float white = 0.0f);
 
 }  // namespace caustream::connection

@@ -22,7 +22,8 @@ tl::unexpected<std::string> failed(const std::filesystem::path& file, const std:
 
 Written writeBytes(const std::filesystem::path& file, std::span<const std::uint8_t> bytes) {
     std::FILE* out = std::fopen(file.c_str(), "wb");
-    if (!out) return failed(file, std::string(std::strerror(errno)) + "; does its folder exist and may you write there?");
+    if (!out)
+        return failed(file, std::string(std::strerror(errno)) + "; does its folder exist and may you write there?");
     bool good = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
     const int error = errno;
     good = std::fclose(out) == 0 && good;
@@ -49,8 +50,9 @@ Written writeJpeg(const std::filesystem::path& file, const Image& picture, int q
     unsigned char* bytes = nullptr;
     unsigned long size = 0;
     const bool grey = picture.bands == 1;
-    const int result = tjCompress2(encoder.get(), picture.data.data(), picture.width, 0, picture.height,
-                                   grey ? TJPF_GRAY : TJPF_RGB, &bytes, &size, grey ? TJSAMP_GRAY : TJSAMP_444, quality, 0);
+    const int result =
+        tjCompress2(encoder.get(), picture.data.data(), picture.width, 0, picture.height, grey ? TJPF_GRAY : TJPF_RGB,
+                    &bytes, &size, grey ? TJSAMP_GRAY : TJSAMP_444, quality, 0);
     const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(bytes, tjFree);
     if (result != 0) return failed(file, tjGetErrorStr2(encoder.get()));
     return writeBytes(file, {bytes, size});
@@ -59,12 +61,21 @@ Written writeJpeg(const std::filesystem::path& file, const Image& picture, int q
 Written writeNpy(const std::filesystem::path& file, const Image& image) {
     std::string head = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(image.height) + ", " +
                        std::to_string(image.width) + ", " + std::to_string(image.bands) + "), }";
-    // The data starts at a multiple of 64, behind ten bytes of magic, version and length, and a line feed ends the header.
+    // The data starts at a multiple of 64, behind ten bytes of magic, version and length, and a line feed ends the
+    // header.
     head.append(63 - (10 + head.size()) % 64, ' ');
     head += '\n';
     const std::vector<float> values = toFloats(image);
 
-    std::vector<std::uint8_t> bytes = {0x93, 'N', 'U', 'M', 'P', 'Y', 1, 0, static_cast<std::uint8_t>(head.size() & 0xff),
+    std::vector<std::uint8_t> bytes = {0x93,
+                                       'N',
+                                       'U',
+                                       'M',
+                                       'P',
+                                       'Y',
+                                       1,
+                                       0,
+                                       static_cast<std::uint8_t>(head.size() & 0xff),
                                        static_cast<std::uint8_t>(head.size() >> 8)};
     bytes.insert(bytes.end(), head.begin(), head.end());
     const auto* raw = reinterpret_cast<const std::uint8_t*>(values.data());

@@ -8,7 +8,7 @@ namespace caustream::connection {
 
 template <class T>
 class Mailbox {
-   public:
+ public:
     void put(T value) {
         std::optional<T> old{std::move(value)};
         {
@@ -22,7 +22,7 @@ class Mailbox {
         return std::exchange(slot_, std::nullopt);
     }
 
-   private:
+ private:
     std::mutex mutex_;
     std::optional<T> slot_;  // guarded by mutex_
 };

@@ -37,9 +37,9 @@ struct Socket::Impl {
     lws_context* context = nullptr;  // made before the thread starts; only lws_cancel_service from elsewhere
 
     std::mutex mutex;
-    std::deque<Outgoing> queue;                  // guarded by mutex
-    std::vector<std::function<void()>> posted;   // guarded by mutex
-    bool open = false;                           // guarded by mutex
+    std::deque<Outgoing> queue;                 // guarded by mutex
+    std::vector<std::function<void()>> posted;  // guarded by mutex
+    bool open = false;                          // guarded by mutex
 
     // The socket's thread only.
     lws* wsi = nullptr;
@@ -207,7 +207,8 @@ void Socket::Impl::ended(const std::string& why) {
         queue.clear();
     }
     // Full jitter up to the doubling bound: many clients of a server that restarts do not come back at once.
-    nextAttempt = Clock::now() + std::chrono::milliseconds(backoffMs / 2 + static_cast<int>(random() % (backoffMs / 2 + 1)));
+    nextAttempt =
+        Clock::now() + std::chrono::milliseconds(backoffMs / 2 + static_cast<int>(random() % (backoffMs / 2 + 1)));
     backoffMs = std::min(2 * backoffMs, kLastBackoffMs);
     const int code = std::exchange(peerCode, 0);
     if (!stop && handlers.closed) handlers.closed(code, why);
@@ -235,8 +236,8 @@ int Socket::Impl::receive(const char* bytes, std::size_t length) {
 
 int Socket::Impl::write() {
     if (closeAsked) {
-        lws_close_reason(wsi, static_cast<lws_close_status>(closeCode), reinterpret_cast<unsigned char*>(closeWhy.data()),
-                         closeWhy.size());
+        lws_close_reason(wsi, static_cast<lws_close_status>(closeCode),
+                         reinterpret_cast<unsigned char*>(closeWhy.data()), closeWhy.size());
         return -1;
     }
     Outgoing message{};
@@ -277,7 +278,8 @@ int Socket::Impl::callback(lws* wsi, lws_callback_reasons reason, void*, void* i
         case LWS_CALLBACK_CLIENT_WRITEABLE:
             return self->write();
         case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
-            if (length >= 2) self->peerCode = static_cast<std::uint8_t>(bytes[0]) << 8 | static_cast<std::uint8_t>(bytes[1]);
+            if (length >= 2)
+                self->peerCode = static_cast<std::uint8_t>(bytes[0]) << 8 | static_cast<std::uint8_t>(bytes[1]);
             if (length > 2) self->closeWhy.assign(bytes + 2, length - 2);
             return 0;
         case LWS_CALLBACK_CLIENT_CLOSED:

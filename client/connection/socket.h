@@ -18,11 +18,11 @@ struct SocketHandlers {
     std::function<void(int closeCode, const std::string& why)> closed;  // also after an attempt that failed
     std::function<void(std::string_view)> text;
     std::function<void(std::span<const std::uint8_t>)> binary;
-    std::function<void()> tick;                                         // about ten times a second
+    std::function<void()> tick;  // about ten times a second
 };
 
 class Socket {
-   public:
+ public:
     Socket(Address address, SocketHandlers handlers);
     void start();
     ~Socket();  // closes, joins the thread
@@ -40,7 +40,7 @@ class Socket {
     // The next attempt waits this long instead of what the backoff says. The socket's thread.
     void reconnectIn(int ms);
 
-   private:
+ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -21,7 +21,8 @@ std::string sha256Hex(std::span<const std::uint8_t> bytes) {
     return hex;
 }
 
-Upload::Upload(Bytes bytes, Wire wire) : bytes_(std::move(bytes)), wire_(std::move(wire)), sha256_(sha256Hex(*bytes_)) {}
+Upload::Upload(Bytes bytes, Wire wire)
+    : bytes_(std::move(bytes)), wire_(std::move(wire)), sha256_(sha256Hex(*bytes_)) {}
 
 void Upload::begin(const protocol::Limits& limits) {
     limits_ = limits;

@@ -1,4 +1,5 @@
-// One asset on its way to the server: in chunks, no more at once than the server's credit. Called on the socket's thread.
+// One asset on its way to the server: in chunks, no more at once than the server's credit. Called on the socket's
+// thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -17,7 +18,7 @@ using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 std::string sha256Hex(std::span<const std::uint8_t> bytes);
 
 class Upload {
-   public:
+ public:
     struct Wire {
         std::function<std::uint32_t()> nextId;
         std::function<void(std::string)> text;
@@ -39,7 +40,7 @@ class Upload {
     bool take(const protocol::ErrorMessage& error);
     void take(const protocol::AssetCredit& credit);
 
-   private:
+ private:
     void pump();
 
     Bytes bytes_;

@@ -46,7 +46,8 @@ tl::expected<Setting, std::string> parseSetting(const std::string& text) {
     protocol::Json json = protocol::Json::parse(value, nullptr, false);
     if (json.is_discarded()) {
         if (value.find_first_of("[]{}\"") != value.npos)
-            return tl::make_unexpected("--set " + text + ": the value is not JSON; quote it for the shell, 'path=[\"a\",1]'");
+            return tl::make_unexpected("--set " + text +
+                                       ": the value is not JSON; quote it for the shell, 'path=[\"a\",1]'");
         json = value;
     }
     return Setting{text.substr(0, equals), std::move(json)};

@@ -12,19 +12,19 @@ namespace caustream::shot {
 enum class FileKind { Png, Npy, Jpeg };
 
 struct Setting {
-    std::string path;      // dotted, or a JSON Pointer
+    std::string path;  // dotted, or a JSON Pointer
     protocol::Json value;
 };
 
 struct Options {
     connection::Address address;
-    std::string scene;     // empty: the server's own choice; otherwise a name or a .glb file
+    std::string scene;  // empty: the server's own choice; otherwise a name or a .glb file
     std::vector<Setting> settings;
     std::string target = "composite";
     int width = 512, height = 512;
     int frames = 1;
-    bool moving = false;   // stream while the light moves, instead of stills
-    int timeoutS = 120;    // for each thing that is waited for
+    bool moving = false;  // stream while the light moves, instead of stills
+    int timeoutS = 120;   // for each thing that is waited for
     std::string token;
     std::string out;
     FileKind kind = FileKind::Png;
@@ -33,7 +33,7 @@ struct Options {
 // "a.b=VALUE": VALUE is JSON; what is not JSON is a string, so that words need no quotes.
 tl::expected<Setting, std::string> parseSetting(const std::string& text);
 
-struct ParseEnd {          // nothing to run: help was asked for, or the arguments are wrong
+struct ParseEnd {  // nothing to run: help was asked for, or the arguments are wrong
     int exitCode = 0;
     std::string text;
 };

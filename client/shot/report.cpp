@@ -18,22 +18,39 @@ Json spread(std::vector<double> values) {
 
 const char* nameOf(protocol::Encoding encoding) {
     switch (encoding) {
-        case protocol::Encoding::Jpeg: return "jpeg";
-        case protocol::Encoding::Raw: return "raw";
-        case protocol::Encoding::Zstd: return "zstd";
-        case protocol::Encoding::Png: return "png";
+        case protocol::Encoding::Jpeg:
+            return "jpeg";
+        case protocol::Encoding::Raw:
+            return "raw";
+        case protocol::Encoding::Zstd:
+            return "zstd";
+        case protocol::Encoding::Png:
+            return "png";
     }
     return "";
 }
 
 Json headerJson(const protocol::FrameHeader& header) {
-    return {{"frame_seq", header.frameSeq}, {"epoch", header.epoch}, {"flags", header.flags},
-            {"encoding", nameOf(header.encoding)}, {"width", header.width}, {"height", header.height},
-            {"view_width", header.viewWidth}, {"view_height", header.viewHeight}, {"bands", header.bands},
-            {"sample_bytes", protocol::sampleBytes(header.sample)}, {"jpeg_quality", header.jpegQuality},
-            {"level", header.level}, {"input_seq", header.inputSeq}, {"state_rev", header.stateRev},
-            {"hold_us", header.holdUs}, {"render_us", header.renderUs}, {"encode_us", header.encodeUs},
-            {"payload_len", header.payloadLen}, {"raw_len", header.rawLen}, {"scale", header.scale}};
+    return {{"frame_seq", header.frameSeq},
+            {"epoch", header.epoch},
+            {"flags", header.flags},
+            {"encoding", nameOf(header.encoding)},
+            {"width", header.width},
+            {"height", header.height},
+            {"view_width", header.viewWidth},
+            {"view_height", header.viewHeight},
+            {"bands", header.bands},
+            {"sample_bytes", protocol::sampleBytes(header.sample)},
+            {"jpeg_quality", header.jpegQuality},
+            {"level", header.level},
+            {"input_seq", header.inputSeq},
+            {"state_rev", header.stateRev},
+            {"hold_us", header.holdUs},
+            {"render_us", header.renderUs},
+            {"encode_us", header.encodeUs},
+            {"payload_len", header.payloadLen},
+            {"raw_len", header.rawLen},
+            {"scale", header.scale}};
 }
 
 // Of the samples as floats: u8 as 0..1.
@@ -72,8 +89,9 @@ void Report::add(const Frame& frame, std::uint64_t tookUs) {
     decodeMs_.push_back(frame.decodeUs / 1000.0);
     // Encoding, both sockets, decoding: all that is not drawing. Of a frame that answers an input, from that input on.
     const std::uint64_t end = frame.receivedUs + frame.decodeUs;
-    const double whole = header.clientUs > 0 && header.clientUs < end ? static_cast<double>(end - header.clientUs) / 1000.0
-                                                                      : tookMs_.back();
+    const double whole = header.clientUs > 0 && header.clientUs < end
+                             ? static_cast<double>(end - header.clientUs) / 1000.0
+                             : tookMs_.back();
     overheadMs_.push_back(whole - header.renderUs / 1000.0);
     payloadBytes_ += header.payloadLen;
     hashes_.push_back(frame.mapHash);

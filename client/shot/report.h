@@ -9,14 +9,14 @@
 namespace caustream::shot {
 
 class Report {
-   public:
+ public:
     Report(const Options& options, const Session& session);
     void add(const connection::Frame& frame, std::uint64_t tookUs);  // from asking to decoded
 
     protocol::Json json(const std::string& file, const connection::Frame& last, const Session& session) const;
     std::string line(const std::string& file, const connection::Frame& last) const;
 
-   private:
+ private:
     const Options& options_;
     protocol::Json server_;
     std::vector<double> tookMs_, renderMs_, encodeMs_, decodeMs_, overheadMs_;

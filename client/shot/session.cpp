@@ -46,8 +46,8 @@ Session::Done Session::waitUntil(const std::string& what, const Ready& ready) {
         if (failure_) return tl::make_unexpected(*failure_);
         if (ready()) return {};
         if (std::chrono::steady_clock::now() > last)
-            return tl::make_unexpected("waited " + std::to_string(timeout_.count()) + " s for " + what + " from " + where() +
-                                       "; try --timeout");
+            return tl::make_unexpected("waited " + std::to_string(timeout_.count()) + " s for " + what + " from " +
+                                       where() + "; try --timeout");
         connection_.wait(std::chrono::milliseconds(200));
     }
 }
@@ -65,7 +65,8 @@ Session::Done Session::update(const Json& patch) {
 Session::Done Session::showFile(std::vector<std::uint8_t> glb) {
     const Json reference = {"asset", connection::sha256Hex(glb)};
     connection_.showFile(std::move(glb));
-    if (auto uploaded = waitUntil("the file's scene", [this] { return report_.has_value(); }); !uploaded) return uploaded;
+    if (auto uploaded = waitUntil("the file's scene", [this] { return report_.has_value(); }); !uploaded)
+        return uploaded;
     return waitForScene(reference);
 }
 

@@ -14,7 +14,7 @@ namespace caustream::shot {
 using Failure = std::string;  // one sentence: what, where, what to try
 
 class Session {
-   public:
+ public:
     Session(connection::Options options, std::chrono::seconds timeout);
 
     using Done = tl::expected<void, Failure>;
@@ -37,7 +37,7 @@ class Session {
     const std::vector<std::string>& warnings() const { return warnings_; }
     const std::vector<double>& roundTripsMs() const { return roundTripsMs_; }
 
-   private:
+ private:
     template <class Ready>
     Done waitUntil(const std::string& what, const Ready& ready);
     void take(const connection::Event& event);

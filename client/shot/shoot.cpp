@@ -92,7 +92,8 @@ Json movedLight(const Json& state, int frame) {
     const double angle = kSwingDeg * std::sin(phase) * std::numbers::pi / 180.0;
     const auto turned = [&](const Json& v, double x0, double z0) {
         const double x = v[0].get<double>() - x0, z = v[2].get<double>() - z0;
-        return Json{x0 + std::cos(angle) * x + std::sin(angle) * z, v[1], z0 - std::sin(angle) * x + std::cos(angle) * z};
+        return Json{x0 + std::cos(angle) * x + std::sin(angle) * z, v[1],
+                    z0 - std::sin(angle) * x + std::cos(angle) * z};
     };
     if (light->contains("position")) {
         const Json& target = state["camera"]["target"];

@@ -1,7 +1,7 @@
 #include "client/view/app.h"
 
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 namespace caustream::view {
 namespace {
 
-constexpr double kResizeRestS = 0.15;     // a window that is being dragged asks once it stands still
+constexpr double kResizeRestS = 0.15;  // a window that is being dragged asks once it stands still
 constexpr double kSavePatienceS = 30.0;
-constexpr double kSoftwarePixels = 3e5;   // of a picture, when the server's GPU is a CPU
+constexpr double kSoftwarePixels = 3e5;  // of a picture, when the server's GPU is a CPU
 constexpr double kMostPixels = 8.2e6;
 
 connection::Options connectionOptions(const Options& options) {
@@ -48,7 +48,8 @@ App::App(Options options)
 void App::run() {
     while (window_.open()) {
         // A frame or an event ends the wait at once; the rest keeps messages from outstaying their time.
-        window_.waitEvents(editor_.pending() || wantedWidth_ != askedWidth_ || wantedHeight_ != askedHeight_ ? 0.01 : 0.25);
+        window_.waitEvents(editor_.pending() || wantedWidth_ != askedWidth_ || wantedHeight_ != askedHeight_ ? 0.01
+                                                                                                             : 0.25);
         const double nowS = Window::seconds();
         takeNews(nowS);
 
@@ -114,7 +115,8 @@ void App::handleMouse(const Rectangle& shown) {
         drag_ = io.KeyShift != controls_.leftDragsLight ? Drag::Light : Drag::Orbit;
         if (LightModel* light = model_.editedLight()) lightPath_ = model_.pathOf(*light);
     }
-    if (onPicture && (ImGui::IsMouseClicked(ImGuiMouseButton_Right) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle))) drag_ = Drag::Pan;
+    if (onPicture && (ImGui::IsMouseClicked(ImGuiMouseButton_Right) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle)))
+        drag_ = Drag::Pan;
     const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
                       ImGui::IsMouseDown(ImGuiMouseButton_Middle);
     if (!held) drag_ = Drag::None;
@@ -124,11 +126,16 @@ void App::handleMouse(const Rectangle& shown) {
     const glm::dvec2 move{io.MouseDelta.x / height, io.MouseDelta.y / height};
     if (drag_ != Drag::None && (move.x != 0.0 || move.y != 0.0)) {
         LightModel* light = model_.editedLight();
-        if (drag_ == Drag::Orbit) orbit(model_.camera, move);
-        else if (drag_ == Drag::Pan) pan(model_.camera, move);
-        else if (light) dragLight(light->pose, lightPath_, model_.camera, move);
-        if (drag_ == Drag::Light) editor_.lightMoved(model_.light);
-        else editor_.cameraMoved();
+        if (drag_ == Drag::Orbit)
+            orbit(model_.camera, move);
+        else if (drag_ == Drag::Pan)
+            pan(model_.camera, move);
+        else if (light)
+            dragLight(light->pose, lightPath_, model_.camera, move);
+        if (drag_ == Drag::Light)
+            editor_.lightMoved(model_.light);
+        else
+            editor_.cameraMoved();
     }
     if (onPicture && io.MouseWheel != 0.0f) {
         zoom(model_.camera, io.MouseWheel);
@@ -155,7 +162,8 @@ void App::askForSize(int width, int height, double nowS) {
     double scale = controls_.resolution;
     if (scale <= 0.0) scale = isSoftware(model_.welcome->gpu) ? std::min(1.0, std::sqrt(kSoftwarePixels / area)) : 1.0;
     scale = std::min(scale, std::sqrt(kMostPixels / area));
-    const int w = std::clamp(static_cast<int>(width * scale) & ~1, 16, 4096), h = std::clamp(static_cast<int>(height * scale) & ~1, 16, 4096);
+    const int w = std::clamp(static_cast<int>(width * scale) & ~1, 16, 4096),
+              h = std::clamp(static_cast<int>(height * scale) & ~1, 16, 4096);
     if (w != wantedWidth_ || h != wantedHeight_) {
         wantedWidth_ = w;
         wantedHeight_ = h;
@@ -173,7 +181,8 @@ void App::showFile(const std::string& file) {
     std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
     const double nowS = Window::seconds();
     if (bytes.empty()) return model_.say(true, "cannot read " + file, nowS);
-    model_.say(false, "sending " + std::filesystem::path(file).filename().string(), nowS);
+    model_.fileName = std::filesystem::path(file).filename();
+    model_.say(false, "sending " + model_.fileName, nowS);
     model_.upload = connection::UploadProgress{0, bytes.size()};
     connection_.showFile(std::move(bytes));
 }
@@ -192,7 +201,8 @@ void App::finishSaving(const connection::Frame& frame, double nowS) {
     if (model_.stream.target != protocol::Target::Spectral) connection_.update({{"stream", {{"encoding", "jpeg"}}}});
     std::filesystem::path file;
     do {
-        file = std::filesystem::path(options_.saveFolder) / ("caustream-" + model_.scene.name.substr(0, 24) + "-" + std::to_string(++saved_) + ".png");
+        file = std::filesystem::path(options_.saveFolder) /
+               ("caustream-" + model_.scene.name.substr(0, 24) + "-" + std::to_string(++saved_) + ".png");
     } while (std::filesystem::exists(file));
     const auto written = connection::writePng(file, connection::toPicture(frame.image));
     model_.say(!written, written ? "saved " + file.string() : written.error(), nowS);
@@ -210,7 +220,8 @@ void App::displayed(const connection::Frame& frame, double nowS) {
     // Only of the first frame that shows an input: a later one would count the time since.
     if (header.inputSeq == shownInput_ || header.clientUs == 0) return;
     shownInput_ = header.inputSeq;
-    model_.latencyMs = static_cast<double>(connection::nowUs() - std::min(header.clientUs, connection::nowUs())) / 1000.0;
+    model_.latencyMs =
+        static_cast<double>(connection::nowUs() - std::min(header.clientUs, connection::nowUs())) / 1000.0;
 }
 
 }  // namespace caustream::view

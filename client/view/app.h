@@ -14,11 +14,11 @@
 namespace caustream::view {
 
 class App {
-   public:
+ public:
     explicit App(Options options);
     void run();
 
-   private:
+ private:
     enum class Drag { None, Orbit, Pan, Light };
 
     void takeNews(double nowS);
@@ -39,13 +39,13 @@ class App {
     Editor editor_;
 
     Drag drag_ = Drag::None;
-    LightPath lightPath_;                   // of the light that is dragged
+    LightPath lightPath_;                     // of the light that is dragged
     std::optional<connection::Frame> frame_;  // taken, not yet on the screen
     int askedWidth_ = 0, askedHeight_ = 0, wantedWidth_ = 0, wantedHeight_ = 0;
     double wantedSinceS_ = 0.0, savingSinceS_ = -1.0;
     int saved_ = 0;
     std::uint32_t shownInput_ = 0;
-    std::deque<double> frameTimesS_;        // of the last second
+    std::deque<double> frameTimesS_;  // of the last second
 };
 
 }  // namespace caustream::view

@@ -33,7 +33,8 @@ void Editor::change(const Json& patch) {
 
 void Editor::cameraMoved() {
     const Pose& pose = model_.camera;
-    moves_["camera"] = {{"eye", vec(pose.eye)}, {"target", vec(pose.target)}, {"up", vec(pose.up)}, {"fov_y_deg", pose.fovYDeg}};
+    moves_["camera"] = {
+        {"eye", vec(pose.eye)}, {"target", vec(pose.target)}, {"up", vec(pose.up)}, {"fov_y_deg", pose.fovYDeg}};
 }
 
 void Editor::lightMoved(const std::string& name) {
@@ -62,13 +63,16 @@ void Editor::glassChanged(const std::string& material) {
 void Editor::showScene(const protocol::SceneRef& scene) {
     moves_ = Json::object();
     changes_ = Json::object();
-    // At once and alone: its nulls, which take the old scene's overrides away, would be lost in a merge with what follows.
+    // At once and alone: its nulls, which take the old scene's overrides away, would be lost in a merge with what
+    // follows.
     connection_.update(protocol::sceneChange(scene));
 }
 
 void Editor::showTarget(const std::string& target) {
     const bool map = target == "spectral";
-    change({{"stream", {{"target", target}, {"encoding", map ? "raw" : "jpeg"}, {"sample", map ? "f16" : "u8"}, {"bands", "rgb"}}}});
+    change(
+        {{"stream",
+          {{"target", target}, {"encoding", map ? "raw" : "jpeg"}, {"sample", map ? "f16" : "u8"}, {"bands", "rgb"}}}});
 }
 
 void Editor::flush(double nowS) {

@@ -9,13 +9,13 @@
 namespace caustream::view {
 
 class Editor {
-   public:
+ public:
     Editor(connection::Connection& connection, Model& model) : connection_(connection), model_(model) {}
 
-    void change(const protocol::Json& patch);     // no nulls; answered by the server
-    void cameraMoved();                           // what the model says now, as input
+    void change(const protocol::Json& patch);  // no nulls; answered by the server
+    void cameraMoved();                        // what the model says now, as input
     void lightMoved(const std::string& name);
-    void lightChanged(const std::string& name);   // cone and intensity too
+    void lightChanged(const std::string& name);  // cone and intensity too
     void glassChanged(const std::string& material);
     void showScene(const protocol::SceneRef& scene);
     // The stream that suits a target: JPEG for pictures, half floats for the spectral map.
@@ -25,7 +25,7 @@ class Editor {
     // Sends what has gathered, not more often than every few milliseconds.
     void flush(double nowS);
 
-   private:
+ private:
     connection::Connection& connection_;
     Model& model_;
     protocol::Json changes_ = protocol::Json::object(), moves_ = protocol::Json::object();

@@ -30,10 +30,13 @@ Glass throughLines(double n_d, double spread) {
 
 Glass glassOf(const protocol::Dispersion& dispersion) {
     if (const auto* constant = std::get_if<protocol::ConstantIndex>(&dispersion)) return {constant->n, 0.0};
-    if (const auto* abbe = std::get_if<protocol::Abbe>(&dispersion)) return throughLines(abbe->n_d, (abbe->n_d - 1.0) / abbe->V_d);
+    if (const auto* abbe = std::get_if<protocol::Abbe>(&dispersion))
+        return throughLines(abbe->n_d, (abbe->n_d - 1.0) / abbe->V_d);
     if (const auto* cauchy = std::get_if<protocol::Cauchy>(&dispersion)) {
         if (cauchy->C_um4 == 0.0) return {cauchy->A, cauchy->B_um2};
-        const auto index = [&](double um) { return cauchy->A + cauchy->B_um2 / (um * um) + cauchy->C_um4 / std::pow(um, 4); };
+        const auto index = [&](double um) {
+            return cauchy->A + cauchy->B_um2 / (um * um) + cauchy->C_um4 / std::pow(um, 4);
+        };
         return throughLines(index(kD_um), index(kF_um) - index(kC_um));
     }
     const auto& glass = std::get<protocol::Sellmeier>(dispersion);
@@ -140,8 +143,10 @@ bool Model::take(const connection::Event& event, double nowS) {
             } else if constexpr (std::is_same_v<T, protocol::Stats>) {
                 stats = value;
             } else if constexpr (std::is_same_v<T, protocol::Status>) {
-                if (value.message.empty()) statuses.erase(value.key);
-                else statuses[value.key] = value;
+                if (value.message.empty())
+                    statuses.erase(value.key);
+                else
+                    statuses[value.key] = value;
             } else if constexpr (std::is_same_v<T, connection::RoundTrip>) {
                 roundTripMs = value.ms;
             } else if constexpr (std::is_same_v<T, connection::UploadProgress>) {
@@ -150,7 +155,8 @@ bool Model::take(const connection::Event& event, double nowS) {
                 say(true, value.why, nowS);
             } else if constexpr (std::is_same_v<T, connection::Disconnected>) {
                 connected = false;
-                connection = value.willRetry ? "no connection (" + value.why + "), trying again" : "no connection: " + value.why;
+                connection =
+                    value.willRetry ? "no connection (" + value.why + "), trying again" : "no connection: " + value.why;
             }
         },
         event);

@@ -28,23 +28,24 @@ Glass glassOf(const protocol::Dispersion& dispersion);
 struct Message {
     bool error = false;
     std::string text;
-    double untilS = 0.0;    // seconds of the window's clock; then it goes
+    double untilS = 0.0;  // seconds of the window's clock; then it goes
 };
 
 struct Model {
     bool connected = false;
-    std::string connection = "connecting";        // one line
+    std::string connection = "connecting";  // one line
     std::optional<protocol::Welcome> welcome;
     protocol::SceneSummary scene;
     bool haveScene = false;
 
     Pose camera, startCamera;
-    std::optional<double> exposureEv;             // nothing: automatic
+    std::optional<double> exposureEv;  // nothing: automatic
     std::map<std::string, LightModel> lights;
-    std::string light;                            // the one that is edited and dragged
-    std::map<std::string, Glass> glasses;         // of the casters' materials
+    std::string light;                     // the one that is edited and dragged
+    std::map<std::string, Glass> glasses;  // of the casters' materials
     std::string material;
     protocol::SceneRef sceneRef;
+    std::string fileName;  // of the newest file that was sent
     protocol::TransportState transport;
     protocol::StreamState stream;
 
@@ -65,7 +66,7 @@ struct Model {
     // What a drag moves the light along; gives a directional light a place to be moved from.
     LightPath pathOf(LightModel& edited) const;
 
-   private:
+ private:
     bool takeState(const protocol::StateMessage& message, double nowS);
 };
 

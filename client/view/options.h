@@ -9,14 +9,14 @@ namespace caustream::view {
 
 struct Options {
     connection::Address address;
-    std::string file;       // a GLB to show; empty: a scene of the server
-    std::string scene;      // empty: the server's own choice
+    std::string file;   // a GLB to show; empty: a scene of the server
+    std::string scene;  // empty: the server's own choice
     std::string token;
     std::string saveFolder = ".";
     int width = 1280, height = 800;  // of the window
 };
 
-struct ParseEnd {           // nothing to run: help was asked for, or the arguments are wrong
+struct ParseEnd {  // nothing to run: help was asked for, or the arguments are wrong
     int exitCode = 0;
     std::string text;
 };

@@ -19,7 +19,8 @@ void label(const char* text) {
     ImGui::SetNextItemWidth(-FLT_MIN);
 }
 
-bool slider(const char* text, const char* id, double& value, double low, double high, const char* format, bool logarithmic = false) {
+bool slider(const char* text, const char* id, double& value, double low, double high, const char* format,
+            bool logarithmic = false) {
     label(text);
     return ImGui::SliderScalar(id, ImGuiDataType_Double, &value, &low, &high, format,
                                ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
@@ -53,10 +54,12 @@ void drawScene(Model& model, Editor& editor) {
     if (!model.welcome) return;
     const bool builtin = model.sceneRef.kind == protocol::SceneRef::Kind::Builtin;
     label("Scene");
-    if (const auto* name = choice("##scene", builtin ? model.sceneRef.name : model.scene.name.substr(0, 12) + " (file)", model.welcome->scenes))
+    if (const auto* name = choice("##scene", builtin ? model.sceneRef.name : model.fileName, model.welcome->scenes))
         editor.showScene({protocol::SceneRef::Kind::Builtin, *name});
     if (model.upload) {
-        const double part = model.upload->size > 0 ? static_cast<double>(model.upload->sent) / static_cast<double>(model.upload->size) : 0.0;
+        const double part = model.upload->size > 0
+                                ? static_cast<double>(model.upload->sent) / static_cast<double>(model.upload->size)
+                                : 0.0;
         ImGui::ProgressBar(static_cast<float>(part), {-FLT_MIN, 0}, part < 1.0 ? "sending the file" : "loading");
     } else {
         ImGui::TextDisabled("or drop a GLB file on the window");
@@ -77,16 +80,21 @@ void drawPicture(Model& model, Controls& controls, Editor& editor) {
 
     bool automatic = !model.exposureEv;
     const auto exposureChanged = [&] {
-        editor.change({{"camera", {{"exposure", model.exposureEv ? Json::array({"ev", *model.exposureEv}) : Json::array({"auto"})}}}});
+        editor.change(
+            {{"camera",
+              {{"exposure", model.exposureEv ? Json::array({"ev", *model.exposureEv}) : Json::array({"auto"})}}}});
     };
     if (ImGui::Checkbox("Automatic exposure", &automatic)) {
-        if (automatic) model.exposureEv.reset();
-        else model.exposureEv = model.stats ? model.stats->exposureEv : 0.0;
+        if (automatic)
+            model.exposureEv.reset();
+        else
+            model.exposureEv = model.stats ? model.stats->exposureEv : 0.0;
         exposureChanged();
     }
     if (model.exposureEv && slider("Exposure", "##ev", *model.exposureEv, -16, 16, "%+.1f EV")) exposureChanged();
 
-    constexpr std::pair<const char*, double> kResolutions[] = {{"automatic", 0.0}, {"100 %", 1.0}, {"75 %", 0.75}, {"50 %", 0.5}};
+    constexpr std::pair<const char*, double> kResolutions[] = {
+        {"automatic", 0.0}, {"100 %", 1.0}, {"75 %", 0.75}, {"50 %", 0.5}};
     const char* shown = kResolutions[0].first;
     for (const auto& [name, value] : kResolutions)
         if (value == controls.resolution) shown = name;
@@ -110,19 +118,22 @@ void drawLight(Model& model, Controls& controls, Editor& editor) {
     if (light->type != LightType::Directional) {
         label("Position, m");
         const glm::dvec3 target = lightTarget(light->pose, model.centre());
-        if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &light->pose.position.x, 3, 0.01f, nullptr, nullptr, "%.2f")) {
+        if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &light->pose.position.x, 3, 0.01f, nullptr, nullptr,
+                               "%.2f")) {
             // It keeps shining where it shone.
             if (glm::distance(target, light->pose.position) > 1e-6)
                 light->pose.direction = glm::normalize(target - light->pose.position);
             editor.lightMoved(model.light);
         }
     }
-    if (light->type == LightType::Spot && slider("Cone, half angle", "##cone", light->halfAngleDeg, 0.5, 80, "%.1f deg"))
+    if (light->type == LightType::Spot &&
+        slider("Cone, half angle", "##cone", light->halfAngleDeg, 0.5, 80, "%.1f deg"))
         editor.lightChanged(model.light);
     const char* unit = light->intensity.unit == protocol::Intensity::Unit::Candela ? "%.4g cd"
                        : light->intensity.unit == protocol::Intensity::Unit::Watt  ? "%.4g W"
                                                                                    : "%.4g lx";
-    if (slider("Intensity", "##intensity", light->intensity.value, 0.01, 1e6, unit, true)) editor.lightChanged(model.light);
+    if (slider("Intensity", "##intensity", light->intensity.value, 0.01, 1e6, unit, true))
+        editor.lightChanged(model.light);
 }
 
 void drawGlass(Model& model, Editor& editor) {
@@ -167,7 +178,8 @@ void drawTransport(Model& model, Editor& editor) {
     };
     sizes("Photons a side", "##grid", "photon_grid", transport.photonGrid, kGrids);
     sizes("Map texels a side", "##map", "map_size", transport.mapSize, kMaps);
-    if (ImGui::Checkbox("Fill gaps", &transport.gapFill)) editor.change({{"transport", {{"gap_fill", transport.gapFill}}}});
+    if (ImGui::Checkbox("Fill gaps", &transport.gapFill))
+        editor.change({{"transport", {{"gap_fill", transport.gapFill}}}});
     ImGui::SameLine();
     if (ImGui::Checkbox("Smooth", &transport.filter)) editor.change({{"transport", {{"filter", transport.filter}}}});
 }
@@ -184,14 +196,17 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
     ImGui::SetNextWindowPos({io.DisplaySize.x - width, 0});
     ImGui::SetNextWindowSize({width, io.DisplaySize.y});
     ImGui::Begin("caustream", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings);
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoSavedSettings);
     const ImVec4 good{0.36f, 0.80f, 0.47f, 1}, bad{0.95f, 0.55f, 0.25f, 1};
     ImGui::TextColored(model.connected ? good : bad, model.connected ? "connected" : "offline");
     ImGui::SameLine();
     ImGui::TextWrapped("%s", model.connection.c_str());
 
-    if (model.connected && model.frameRate < 2.0) ImGui::TextDisabled("at rest: nothing changes, nothing is drawn");
-    else if (model.connected) ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
+    if (model.connected && model.frameRate < 2.0)
+        ImGui::TextDisabled("at rest: nothing changes, nothing is drawn");
+    else if (model.connected)
+        ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
 
     drawScene(model, editor);
     if (section("Picture")) drawPicture(model, controls, editor);
@@ -204,7 +219,8 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
 
 void drawMessages(const Model& model, float pictureWidth) {
     std::vector<Message> lines;
-    for (const auto& [key, status] : model.statuses) lines.push_back({status.level == protocol::Status::Level::Error, status.message});
+    for (const auto& [key, status] : model.statuses)
+        lines.push_back({status.level == protocol::Status::Level::Error, status.message});
     lines.insert(lines.end(), model.messages.begin(), model.messages.end());
     if (!model.connected) lines.push_back({true, model.connection});
     if (lines.empty()) return;
@@ -216,7 +232,8 @@ void drawMessages(const Model& model, float pictureWidth) {
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
     ImGui::PushTextWrapPos(std::max(pictureWidth - 50, 80.0f));
     for (const auto& line : lines)
-        ImGui::TextColored(line.error ? ImVec4{1, 0.6f, 0.4f, 1} : ImVec4{0.9f, 0.9f, 0.92f, 1}, "%s", line.text.c_str());
+        ImGui::TextColored(line.error ? ImVec4{1, 0.6f, 0.4f, 1} : ImVec4{0.9f, 0.9f, 0.92f, 1}, "%s",
+                           line.text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::End();
 }

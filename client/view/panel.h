@@ -9,8 +9,8 @@ namespace caustream::view {
 struct Controls {
     bool panel = true;
     bool leftDragsLight = false;
-    double resolution = 0.0;   // pictures' pixels per window pixel; 0: as the server's GPU suggests
-    bool save = false;         // asked for; the window takes it back
+    double resolution = 0.0;  // pictures' pixels per window pixel; 0: as the server's GPU suggests
+    bool save = false;        // asked for; the window takes it back
 };
 
 constexpr float kPanelWidth = 350.0f;  // at scale 1

@@ -44,7 +44,8 @@ unsigned compile(unsigned kind, const char* source) {
     if (!good) {
         char log[512] = "";
         glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-        throw std::runtime_error(std::string("the picture's shader does not compile: ") + log + "; update the GPU's driver");
+        throw std::runtime_error(std::string("the picture's shader does not compile: ") + log +
+                                 "; update the GPU's driver");
     }
     return shader;
 }
@@ -65,7 +66,8 @@ float sparseWhite(const connection::Image& image) {
 }  // namespace
 
 Picture::Picture() {
-    const unsigned vertex = compile(GL_VERTEX_SHADER, kVertexShader), fragment = compile(GL_FRAGMENT_SHADER, kFragmentShader);
+    const unsigned vertex = compile(GL_VERTEX_SHADER, kVertexShader),
+                   fragment = compile(GL_FRAGMENT_SHADER, kFragmentShader);
     program_ = glCreateProgram();
     glAttachShader(program_, vertex);
     glAttachShader(program_, fragment);
@@ -75,8 +77,10 @@ Picture::Picture() {
     glGenVertexArrays(1, &vertexArray_);
     glGenTextures(1, &texture_);
     glBindTexture(GL_TEXTURE_2D, texture_);
-    for (const unsigned filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-    for (const unsigned wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    for (const unsigned filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const unsigned wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
 }
 
 Picture::~Picture() {
@@ -89,23 +93,25 @@ void Picture::set(const connection::Image& image) {
     using protocol::Sample;
     if (image.bands != 3 && image.bands != 1) return set(connection::toPicture(image));
     const int format = image.bands == 3 ? GL_RGB : GL_RED;
-    const int type = image.sample == Sample::U8 ? GL_UNSIGNED_BYTE : image.sample == Sample::F16 ? GL_HALF_FLOAT : GL_FLOAT;
+    const int type = image.sample == Sample::U8    ? GL_UNSIGNED_BYTE
+                     : image.sample == Sample::F16 ? GL_HALF_FLOAT
+                                                   : GL_FLOAT;
     const int sample = static_cast<int>(image.sample) * 4 + image.bands;
     white_ = image.sample == Sample::U8 ? 0.0f : sparseWhite(image);
 
     glBindTexture(GL_TEXTURE_2D, texture_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     if (width_ == image.width && height_ == image.height && sample_ == sample) {
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, static_cast<unsigned>(format), static_cast<unsigned>(type),
-                        image.data.data());
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, static_cast<unsigned>(format),
+                        static_cast<unsigned>(type), image.data.data());
         return;
     }
     width_ = image.width;
     height_ = image.height;
     sample_ = sample;
     const int internal = image.sample == Sample::U8 ? GL_RGB8 : GL_RGB16F;
-    glTexImage2D(GL_TEXTURE_2D, 0, internal, width_, height_, 0, static_cast<unsigned>(format), static_cast<unsigned>(type),
-                 image.data.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, internal, width_, height_, 0, static_cast<unsigned>(format),
+                 static_cast<unsigned>(type), image.data.data());
     // One band is shown as grey.
     const int swizzle[] = {GL_RED, image.bands == 3 ? GL_GREEN : GL_RED, image.bands == 3 ? GL_BLUE : GL_RED, GL_ONE};
     glTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, swizzle);
@@ -114,7 +120,8 @@ void Picture::set(const connection::Image& image) {
 Rectangle Picture::fit(const Rectangle& area) const {
     if (empty()) return area;
     const double scale = std::min(static_cast<double>(area.width) / width_, static_cast<double>(area.height) / height_);
-    const int width = static_cast<int>(std::lround(width_ * scale)), height = static_cast<int>(std::lround(height_ * scale));
+    const int width = static_cast<int>(std::lround(width_ * scale)),
+              height = static_cast<int>(std::lround(height_ * scale));
     return {area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height};
 }
 

@@ -4,12 +4,12 @@
 
 namespace caustream::view {
 
-struct Rectangle {          // pixels of the framebuffer, from its bottom left corner
+struct Rectangle {  // pixels of the framebuffer, from its bottom left corner
     int x = 0, y = 0, width = 0, height = 0;
 };
 
 class Picture {
-   public:
+ public:
     Picture();
     ~Picture();
     Picture(const Picture&) = delete;
@@ -24,10 +24,10 @@ class Picture {
     Rectangle fit(const Rectangle& area) const;
     void draw(const Rectangle& area) const;
 
-   private:
+ private:
     unsigned texture_ = 0, program_ = 0, vertexArray_ = 0;
     int width_ = 0, height_ = 0, sample_ = 0;
-    float white_ = 0.0f;    // 0: bytes that are sRGB already
+    float white_ = 0.0f;  // 0: bytes that are sRGB already
 };
 
 }  // namespace caustream::view

@@ -9,18 +9,19 @@
 namespace caustream::view {
 namespace {
 
-constexpr double kOrbitPerHeight = std::numbers::pi;         // half a turn for a drag over the whole picture
-constexpr double kPole = 0.02;                               // rad: how near to straight up or down the eye may come
+constexpr double kOrbitPerHeight = std::numbers::pi;  // half a turn for a drag over the whole picture
+constexpr double kPole = 0.02;                        // rad: how near to straight up or down the eye may come
 constexpr double kZoomPerStep = 0.88;
-constexpr double kLightPerHeight = 2.0;                      // times the distance from its target
-constexpr double kWallShare = 0.97;                          // of the way to a wall that a light may go
+constexpr double kLightPerHeight = 2.0;  // times the distance from its target
+constexpr double kWallShare = 0.97;      // of the way to a wall that a light may go
 constexpr glm::dvec3 kWorldUp{0, 1, 0};
 
 // Along the unit vector `direction` from a point in the room, a little short of the wall.
 double distanceToWall(const glm::dvec3& from, const glm::dvec3& direction, const Room& room) {
     double nearest = 1e9;
     for (int i = 0; i < 3; ++i)
-        if (direction[i] != 0.0) nearest = std::min(nearest, ((direction[i] > 0.0 ? room.max[i] : room.min[i]) - from[i]) / direction[i]);
+        if (direction[i] != 0.0)
+            nearest = std::min(nearest, ((direction[i] > 0.0 ? room.max[i] : room.min[i]) - from[i]) / direction[i]);
     return kWallShare * nearest;
 }
 
@@ -81,7 +82,8 @@ void dragLight(LightPose& light, const LightPath& path, const Pose& camera, glm:
     const glm::dvec3 away = overhead ? glm::normalize(glm::cross(kWorldUp, right)) : kWorldUp;
     const glm::dvec3 moved = offset + kLightPerHeight * distance * (move.x * right - move.y * away);
     const glm::dvec3 from = glm::normalize(moved);
-    const double reach = path.room ? std::min(path.distance, distanceToWall(path.target, from, *path.room)) : path.distance;
+    const double reach =
+        path.room ? std::min(path.distance, distanceToWall(path.target, from, *path.room)) : path.distance;
     light.position = path.target + from * reach;
     light.direction = -from;
 }

@@ -33,11 +33,11 @@ struct LightPose {
 struct LightPath {
     glm::dvec3 target{0};
     double distance = 1.0;
-    std::optional<Room> room;    // it stays within: walls that are nearer than the distance bring it closer
+    std::optional<Room> room;  // it stays within: walls that are nearer than the distance bring it closer
 };
 
-// Around the target, and aimed at it: right goes to the picture's right, up goes away from the eye, or up where the light
-// stands low. The direction's length is 1 afterwards.
+// Around the target, and aimed at it: right goes to the picture's right, up goes away from the eye, or up where the
+// light stands low. The direction's length is 1 afterwards.
 void dragLight(LightPose& light, const LightPath& path, const Pose& camera, glm::dvec2 move);
 
 // Where a light shines: the point of its axis that is nearest to `centre`, in front of it.

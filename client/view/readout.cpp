@@ -54,8 +54,8 @@ void drawStages(const protocol::Stats& stats) {
 
 void drawPlan(const protocol::Stats& stats) {
     for (const auto& entry : stats.plan) {
-        ImGui::TextColored(entry.run ? ImVec4{0.55f, 0.85f, 0.6f, 1} : ImVec4{0.56f, 0.56f, 0.58f, 1}, "%s %s", entry.run ? "run " : "skip",
-                           entry.pass.c_str());
+        ImGui::TextColored(entry.run ? ImVec4{0.55f, 0.85f, 0.6f, 1} : ImVec4{0.56f, 0.56f, 0.58f, 1}, "%s %s",
+                           entry.run ? "run " : "skip", entry.pass.c_str());
         if (entry.reason.empty()) continue;
         ImGui::Indent();
         ImGui::PushTextWrapPos(0.0f);

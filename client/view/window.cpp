@@ -1,10 +1,10 @@
 #include "client/view/window.h"
 
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -29,8 +29,9 @@ void onDrop(GLFWwindow* window, int count, const char** paths) {
 
 Window::Window(const char* title, int width, int height) {
     if (!glfwInit())
-        throw std::runtime_error("cannot open a window: " + lastGlfwError() +
-                                 "; is there a display? Without one, caustream-shot or the browser page shows pictures");
+        throw std::runtime_error(
+            "cannot open a window: " + lastGlfwError() +
+            "; is there a display? Without one, caustream-shot or the browser page shows pictures");
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -79,8 +80,10 @@ void Window::setTitle(const std::string& title) {
 }
 
 void Window::waitEvents(double longestS) {
-    if (longestS > 0.0) glfwWaitEventsTimeout(longestS);
-    else glfwPollEvents();
+    if (longestS > 0.0)
+        glfwWaitEventsTimeout(longestS);
+    else
+        glfwPollEvents();
 }
 
 void Window::wake() {

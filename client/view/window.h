@@ -9,7 +9,7 @@ struct GLFWwindow;
 namespace caustream::view {
 
 class Window {
-   public:
+ public:
     Window(const char* title, int width, int height);
     ~Window();
     Window(const Window&) = delete;
@@ -24,13 +24,13 @@ class Window {
     void waitEvents(double longestS);
     static void wake();  // any thread
 
-    void beginFrame();   // Dear ImGui's
-    void endFrame();     // draws its windows, swaps
+    void beginFrame();  // Dear ImGui's
+    void endFrame();    // draws its windows, swaps
     float scale() const { return scale_; }
     void framebufferSize(int& width, int& height) const;
     static double seconds();
 
-   private:
+ private:
     GLFWwindow* window_ = nullptr;
     float scale_ = 1.0f;
 };

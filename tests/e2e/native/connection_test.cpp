@@ -18,9 +18,12 @@ connection::Options optionsFor(const std::string& url) {
     return {.address = *connection::parseAddress(url), .clientName = "connection_test"};
 }
 
-// The next frame that `fits`; acknowledges all. Nothing after a minute: a server that is slow, but not one that is still.
-std::optional<connection::Frame> frameThat(Connection& connection, const std::function<bool(const connection::Frame&)>& fits) {
-    for (const auto last = std::chrono::steady_clock::now() + 60s; std::chrono::steady_clock::now() < last; connection.wait(100ms)) {
+// The next frame that `fits`; acknowledges all. Nothing after a minute: a server that is slow, but not one that is
+// still.
+std::optional<connection::Frame> frameThat(Connection& connection,
+                                           const std::function<bool(const connection::Frame&)>& fits) {
+    for (const auto last = std::chrono::steady_clock::now() + 60s; std::chrono::steady_clock::now() < last;
+         connection.wait(100ms)) {
         auto frame = connection.takeFrame();
         if (!frame) continue;
         connection.acknowledge(*frame, 0);
@@ -44,7 +47,8 @@ TEST(Address, TakesWhatPeopleWrite) {
     EXPECT_EQ(text("host:65535"), "ws://host:65535/ws");
     EXPECT_EQ(text("host"), "ws://host:80/ws");
     EXPECT_EQ(text("http://[::1]:5/"), "ws://[::1]:5/ws");
-    for (const char* wrong : {"", "http://", "http://host:0", "http://host:65536", "http://host:x", "https://host", "ftp://host", "http://[::1"})
+    for (const char* wrong : {"", "http://", "http://host:0", "http://host:65536", "http://host:x", "https://host",
+                              "ftp://host", "http://[::1"})
         EXPECT_EQ(text(wrong), "error") << wrong;
 }
 
@@ -77,7 +81,8 @@ TEST(Connection, KeepsOnlyWhatTheServerTook) {
     ASSERT_TRUE(connection.update({{"scene", {"builtin", "nowhere"}}}));
     bool refused = false;
     for (int i = 0; i < 600 && !refused; ++i, connection.wait(100ms))
-        for (const auto& event : connection.takeEvents()) refused |= std::holds_alternative<protocol::ErrorMessage>(event);
+        for (const auto& event : connection.takeEvents())
+            refused |= std::holds_alternative<protocol::ErrorMessage>(event);
     ASSERT_TRUE(refused);
     EXPECT_FALSE(connection.document().contains("scene"));
     EXPECT_EQ(connection.document()["stream"]["width"], 64);

@@ -10,14 +10,15 @@ namespace caustream::e2e {
 namespace {
 
 // The XWD file format, version 7: words in big-endian order, then colour map entries of 12 bytes, then the picture.
-constexpr int kHeaderSize = 0, kWidth = 4, kHeight = 5, kByteOrder = 7, kBitsPerPixel = 11, kBytesPerLine = 12, kColors = 19;
+constexpr int kHeaderSize = 0, kWidth = 4, kHeight = 5, kByteOrder = 7, kBitsPerPixel = 11, kBytesPerLine = 12,
+              kColors = 19;
 
 }  // namespace
 
 Display::Display(int width, int height)
     // -displayfd 1: it finds a free number itself and says it.
-    : xvfb_("Xvfb", {"-displayfd", "1", "-screen", "0", std::to_string(width) + "x" + std::to_string(height) + "x24", "-nolisten", "tcp",
-                     "-fbdir", folder_.path}) {
+    : xvfb_("Xvfb", {"-displayfd", "1", "-screen", "0", std::to_string(width) + "x" + std::to_string(height) + "x24",
+                     "-nolisten", "tcp", "-fbdir", folder_.path}) {
     const std::string number = xvfb_.firstLine();
     if (number.empty()) throw std::runtime_error("Xvfb did not start; is the package xvfb installed?");
     name_ = ":" + number;
@@ -32,14 +33,17 @@ Pixels Display::look() const {
     const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
     const auto word = [&](int index) {
         const unsigned char* p = &bytes.at(static_cast<std::size_t>(4 * index) + 3) - 3;
-        return static_cast<std::size_t>(p[0]) << 24 | static_cast<std::size_t>(p[1]) << 16 | static_cast<std::size_t>(p[2]) << 8 | p[3];
+        return static_cast<std::size_t>(p[0]) << 24 | static_cast<std::size_t>(p[1]) << 16 |
+               static_cast<std::size_t>(p[2]) << 8 | p[3];
     };
-    if (word(kBitsPerPixel) != 32 || word(kByteOrder) != 0) throw std::runtime_error("the screen is not of little-endian 32-bit pixels");
+    if (word(kBitsPerPixel) != 32 || word(kByteOrder) != 0)
+        throw std::runtime_error("the screen is not of little-endian 32-bit pixels");
     Pixels out{static_cast<int>(word(kWidth)), static_cast<int>(word(kHeight)), 3, {}};
     const std::size_t start = word(kHeaderSize) + 12 * word(kColors);
     for (std::size_t y = 0; y < word(kHeight); ++y)
         for (std::size_t x = 0; x < word(kWidth); ++x)
-            for (const std::size_t channel : {2u, 1u, 0u}) out.values.push_back(bytes.at(start + y * word(kBytesPerLine) + 4 * x + channel));
+            for (const std::size_t channel : {2u, 1u, 0u})
+                out.values.push_back(bytes.at(start + y * word(kBytesPerLine) + 4 * x + channel));
     return out;
 }
 

@@ -8,7 +8,7 @@
 namespace caustream::e2e {
 
 class Display {
-   public:
+ public:
     Display(int width, int height);
     const std::string& name() const { return name_; }  // ":93"
     Environment environment() const;
@@ -20,7 +20,7 @@ class Display {
     // Presses a button at a place, moves in small steps, lets go; with a key held, if one is named.
     void drag(int x, int y, int dx, int dy, const std::string& key = "", int button = 1) const;
 
-   private:
+ private:
     TemporaryFolder folder_;
     Background xvfb_;
     std::string name_;

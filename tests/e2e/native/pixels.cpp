@@ -54,7 +54,8 @@ Pixels readPng(const std::string& file) {
     if (!png_image_begin_read_from_file(&png, file.c_str())) throw std::runtime_error(file + ": " + png.message);
     png.format = PNG_FORMAT_RGB;
     std::vector<unsigned char> bytes(PNG_IMAGE_SIZE(png));
-    if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr)) throw std::runtime_error(file + ": " + png.message);
+    if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr))
+        throw std::runtime_error(file + ": " + png.message);
     return {static_cast<int>(png.width), static_cast<int>(png.height), 3, {bytes.begin(), bytes.end()}};
 }
 
@@ -72,7 +73,8 @@ Pixels readJpeg(const std::string& file) {
 
 Pixels readNpy(const std::string& file) {
     const auto bytes = bytesOf(file);
-    if (bytes.size() < 10 || std::memcmp(bytes.data(), "\x93NUMPY\x01\x00", 8) != 0) throw std::runtime_error(file + " is no NPY file");
+    if (bytes.size() < 10 || std::memcmp(bytes.data(), "\x93NUMPY\x01\x00", 8) != 0)
+        throw std::runtime_error(file + " is no NPY file");
     const std::size_t start = 10u + bytes[8] + 256u * bytes[9];
     if (start % 64 != 0 || bytes.size() < start) throw std::runtime_error(file + ": the header's length is wrong");
     const std::string header(bytes.begin() + 10, bytes.begin() + static_cast<std::ptrdiff_t>(start));
@@ -81,8 +83,10 @@ Pixels readNpy(const std::string& file) {
     if (header.find("'descr': '<f4'") == header.npos || shape == header.npos ||
         std::sscanf(header.c_str() + shape + 10, "%d, %d, %d)", &out.height, &out.width, &out.bands) != 3)
         throw std::runtime_error(file + ": the header is " + header);
-    out.values.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height) * static_cast<std::size_t>(out.bands));
-    if (bytes.size() != start + 4 * out.values.size()) throw std::runtime_error(file + " has not the size its shape says");
+    out.values.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height) *
+                      static_cast<std::size_t>(out.bands));
+    if (bytes.size() != start + 4 * out.values.size())
+        throw std::runtime_error(file + " has not the size its shape says");
     std::memcpy(out.values.data(), &bytes[start], 4 * out.values.size());
     return out;
 }

@@ -10,10 +10,10 @@ struct Pixels {
     int width = 0, height = 0, bands = 0;
     std::vector<float> values;  // interleaved; pictures 0..255
 
-    float luminance(int x, int y) const;            // BT.709 weights; of one band: itself
-    float largest(int x, int y) const;              // of the bands
-    double quantile(double fraction) const;         // of the luminance
-    double mean() const;                            // of the luminance
+    float luminance(int x, int y) const;     // BT.709 weights; of one band: itself
+    float largest(int x, int y) const;       // of the bands
+    double quantile(double fraction) const;  // of the luminance
+    double mean() const;                     // of the luminance
 };
 
 // They throw std::runtime_error, which fails the test.
@@ -22,7 +22,7 @@ Pixels readJpeg(const std::string& file);
 Pixels readNpy(const std::string& file);
 
 struct Centroid {
-    double x = 0, y = 0;   // pixels
+    double x = 0, y = 0;  // pixels
     int count = 0;
 };
 // Of the pixels whose luminance exceeds `threshold`.

@@ -15,7 +15,8 @@ namespace caustream::e2e {
 namespace {
 
 // `out` and `err`: where the program writes; -1: where we do.
-pid_t start(const std::string& program, const std::vector<std::string>& arguments, const Environment& environment, int out, int err) {
+pid_t start(const std::string& program, const std::vector<std::string>& arguments, const Environment& environment,
+            int out, int err) {
     std::vector<char*> argv = {const_cast<char*>(program.c_str())};
     for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
@@ -56,8 +57,10 @@ Result run(const std::string& program, const std::vector<std::string>& arguments
             if (ends[i].fd < 0 || ends[i].revents == 0) continue;
             std::array<char, 4096> buffer{};
             const ssize_t size = read(ends[i].fd, buffer.data(), buffer.size());
-            if (size <= 0) ends[i].fd = -1;
-            else (i == 0 ? result.out : result.err).append(buffer.data(), static_cast<std::size_t>(size));
+            if (size <= 0)
+                ends[i].fd = -1;
+            else
+                (i == 0 ? result.out : result.err).append(buffer.data(), static_cast<std::size_t>(size));
         }
     }
     close(out[0]);
@@ -66,7 +69,8 @@ Result run(const std::string& program, const std::vector<std::string>& arguments
     return result;
 }
 
-Background::Background(const std::string& program, const std::vector<std::string>& arguments, const Environment& environment) {
+Background::Background(const std::string& program, const std::vector<std::string>& arguments,
+                       const Environment& environment) {
     const auto out = makePipe();
     pid_ = start(program, arguments, environment, out[1], -1);
     close(out[1]);
@@ -91,10 +95,11 @@ int Background::stop(int signal) {
     return waitFor(std::exchange(pid_, 0));
 }
 
-Server::Server(std::vector<std::string> options) : process_(CAUSTREAM_BIN "/caustream-server", [&] {
-      options.insert(options.end(), {"--gpu", "software", "--log-level", "error"});
-      return options;
-  }()) {
+Server::Server(std::vector<std::string> options)
+    : process_(CAUSTREAM_BIN "/caustream-server", [&] {
+          options.insert(options.end(), {"--gpu", "software", "--log-level", "error"});
+          return options;
+      }()) {
     const std::string line = process_.firstLine();
     if (!line.starts_with("ready ")) throw std::runtime_error("the server did not start");
     url_ = line.substr(6);

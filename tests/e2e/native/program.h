@@ -12,7 +12,7 @@ namespace caustream::e2e {
 using Environment = std::map<std::string, std::string>;  // on top of the test's own
 
 struct Result {
-    int exitCode = -1;     // negative: the signal that killed it
+    int exitCode = -1;  // negative: the signal that killed it
     std::string out, err;
 };
 
@@ -20,8 +20,9 @@ Result run(const std::string& program, const std::vector<std::string>& arguments
 
 // Runs until the end of its scope, then gets SIGTERM.
 class Background {
-   public:
-    Background(const std::string& program, const std::vector<std::string>& arguments, const Environment& environment = {});
+ public:
+    Background(const std::string& program, const std::vector<std::string>& arguments,
+               const Environment& environment = {});
     ~Background();
     Background(const Background&) = delete;
 
@@ -30,21 +31,21 @@ class Background {
     pid_t pid() const { return pid_; }
     int stop(int signal);  // the exit code, as in Result
 
-   private:
+ private:
     pid_t pid_ = 0;
     int out_ = -1;
 };
 
 // A caustream-server; `options` go to it.
 class Server {
-   public:
+ public:
     explicit Server(std::vector<std::string> options = {"--port", "0"});
     const std::string& url() const { return url_; }
     std::string port() const;
     pid_t pid() const { return process_.pid(); }
     void kill() { process_.stop(9); }
 
-   private:
+ private:
     Background process_;
     std::string url_;
 };

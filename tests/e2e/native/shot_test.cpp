@@ -20,7 +20,7 @@ using testing::StartsWith;
 
 // One server for all: every shot is a session of its own.
 class Shot : public testing::Test {
-   protected:
+ protected:
     static void SetUpTestSuite() { server_ = std::make_unique<Server>(); }
     static void TearDownTestSuite() { server_.reset(); }
 
@@ -64,7 +64,8 @@ TEST_F(Shot, PngHoldsACaustic) {
 
 TEST_F(Shot, NpyHoldsTheFiniteSpectralMap) {
     const std::string file = folder_ / "map.npy";
-    const Result result = shoot({"--scene", "sphere", "--target", "spectral", "--set", "transport.map_size=256", "--out", file});
+    const Result result =
+        shoot({"--scene", "sphere", "--target", "spectral", "--set", "transport.map_size=256", "--out", file});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const Pixels map = readNpy(file);
     EXPECT_EQ(map.width, 256);
@@ -82,8 +83,9 @@ TEST_F(Shot, NpyHoldsTheFiniteSpectralMap) {
 
 TEST_F(Shot, NpyHoldsABandPerWavelength) {
     const std::string file = folder_ / "bands.npy";
-    const Result result = shoot({"--scene", "sphere", "--target", "spectral", "--set", "stream.bands=wavelengths", "--set",
-                                 "/transport/wavelengths=5", "--set", "transport.map_size=128", "--out", file});
+    const Result result =
+        shoot({"--scene", "sphere", "--target", "spectral", "--set", "stream.bands=wavelengths", "--set",
+               "/transport/wavelengths=5", "--set", "transport.map_size=128", "--out", file});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_EQ(readNpy(file).bands, 5);
 }
@@ -117,11 +119,13 @@ TEST_F(Shot, JpegIsThePngButForItsLosses) {
 
 TEST_F(Shot, MovesTheLightWithTheStream) {
     const std::string file = folder_ / "moving-#.jpg";
-    const Result result = shoot({"--scene", "sphere", "--width", "96", "--height", "96", "--moving", "--frames", "4", "--out", file});
+    const Result result =
+        shoot({"--scene", "sphere", "--width", "96", "--height", "96", "--moving", "--frames", "4", "--out", file});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const Pixels first = readJpeg(folder_ / "moving-0000.jpg"), last = readJpeg(folder_ / "moving-0003.jpg");
     double change = 0.0;
-    for (std::size_t i = 0; i < first.values.size(); ++i) change = std::max<double>(change, std::abs(first.values[i] - last.values[i]));
+    for (std::size_t i = 0; i < first.values.size(); ++i)
+        change = std::max<double>(change, std::abs(first.values[i] - last.values[i]));
     EXPECT_GT(change, 40.0) << "the light stood still";
     EXPECT_TRUE(readJson(folder_ / "moving-0003.jpg.json")["statistics"]["took_ms"].contains("median"));
 }
@@ -137,12 +141,14 @@ TEST_F(Shot, SendsAFile) {
     const std::string file = folder_ / "sent.png", builtin = folder_ / "builtin.png";
     ASSERT_EQ(shoot({"--scene", CAUSTREAM_SPHERE_GLB, "--width", "64", "--height", "64", "--out", file}).exitCode, 0);
     ASSERT_EQ(shoot({"--scene", "sphere", "--width", "64", "--height", "64", "--out", builtin}).exitCode, 0);
-    EXPECT_EQ(readPng(file).values, readPng(builtin).values) << "the same file gives the same picture, whichever way it came";
+    EXPECT_EQ(readPng(file).values, readPng(builtin).values)
+        << "the same file gives the same picture, whichever way it came";
 }
 
 TEST_F(Shot, SameStateSameMap) {
     const std::string file = folder_ / "again.png";
-    const Result result = shoot({"--scene", "sphere", "--width", "64", "--height", "64", "--frames", "3", "--out", file});
+    const Result result =
+        shoot({"--scene", "sphere", "--width", "64", "--height", "64", "--frames", "3", "--out", file});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const json hashes = readJson(file + ".json")["map_hashes"];
     ASSERT_EQ(hashes.size(), 3u);
@@ -167,8 +173,10 @@ TEST_F(Shot, SaysWhatIsWrongInOneLine) {
     std::ofstream(folder_ / "cut.glb") << "glTF";
     expectOneLine(shoot({"--out", file, "--scene", folder_ / "cut.glb"}), "asset_invalid");
     expectOneLine(shoot({"--out", folder_ / "no/such/folder.png", "--scene", "sphere"}), "cannot write");
-    expectOneLine(run(CAUSTREAM_BIN "/caustream-shot", {"--url", "http://127.0.0.1:1", "--out", file}), "is caustream-server running");
-    expectOneLine(run(CAUSTREAM_BIN "/caustream-shot", {"--url", "gopher://127.0.0.1", "--out", file}), "http://host:port");
+    expectOneLine(run(CAUSTREAM_BIN "/caustream-shot", {"--url", "http://127.0.0.1:1", "--out", file}),
+                  "is caustream-server running");
+    expectOneLine(run(CAUSTREAM_BIN "/caustream-shot", {"--url", "gopher://127.0.0.1", "--out", file}),
+                  "http://host:port");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// caustream-view under Xvfb, with a real mouse: what is on the screen, and where the caustic goes when the light is dragged.
+// caustream-view under Xvfb, with a real mouse: what is on the screen, and where the caustic goes when the light is
+// dragged.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ Centroid causticOf(const Pixels& picture) {
 }
 
 class View : public testing::Test {
-   protected:
+ protected:
     // The picture once it has stood still for a second, and fits; the last one after a minute and a half.
     template <class Fits>
     Pixels settled(const Fits& fits) {
@@ -54,16 +55,14 @@ class View : public testing::Test {
         }
         return before;
     }
-    static bool isLit(const Pixels& picture) {
-        return picture.quantile(0.998) > 180.0 && picture.quantile(0.3) > 5.0;
-    }
+    static bool isLit(const Pixels& picture) { return picture.quantile(0.998) > 180.0 && picture.quantile(0.3) > 5.0; }
 
     Server server_;
     Display display_{kWidth, kHeight};
     TemporaryFolder folder_;
     Background view_{CAUSTREAM_BIN "/caustream-view",
-                     {"--url", server_.url(), "--scene", "sphere", "--save-folder", folder_.path, "--width", std::to_string(kWidth),
-                      "--height", std::to_string(kHeight)},
+                     {"--url", server_.url(), "--scene", "sphere", "--save-folder", folder_.path, "--width",
+                      std::to_string(kWidth), "--height", std::to_string(kHeight)},
                      display_.environment()};
 };
 
