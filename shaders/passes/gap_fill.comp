@@ -40,7 +40,7 @@ void main() {
 #if COLUMNS
         vec3 shown = here;
         if (all(lessThan(here, vec3(kDark)))) shown = mix(fill, texelFetch(u_rows, texelAt(line, i), 0).rgb, 0.5);
-        imageStore(u_out, texelAt(line, i), vec4(shown, 1.0));
+        imageStore(u_out, texelAt(line, i), vec4(shown, texelFetch(u_map, texelAt(line, i), 0).a));
 #else
         imageStore(u_out, texelAt(line, i), vec4(fill, 1.0));
 #endif

@@ -31,7 +31,7 @@ class GapFillTest : public CameraPass {
             for (int x = 0; x < kSize; ++x) {
                 const glm::vec3 here = at(map, x, y);
                 if (here.r >= 0.3f || here.g >= 0.3f || here.b >= 0.3f) continue;
-                filled[std::size_t(y * kSize + x)] = glm::vec4(0.5f * (check(map, x, y, {0, 1}) + check(map, x, y, {1, 0})), 1.0f);
+                filled[std::size_t(y * kSize + x)] = glm::vec4(0.5f * (check(map, x, y, {0, 1}) + check(map, x, y, {1, 0})), map[std::size_t(y * kSize + x)].a);
             }
         }
         return filled;
@@ -48,13 +48,14 @@ class GapFillTest : public CameraPass {
         for (std::size_t i = 0; i < got.size(); ++i) {
             // Sums of multiples of 1/64 are exact; what remains is the product with 0.2.
             EXPECT_LT(glm::distance(glm::vec3(got[i]), glm::vec3(expected[i])), 1e-5f) << i % kSize << " " << i / kSize;
+            EXPECT_EQ(got[i].a, expected[i].a);   // the receiver's layer, not light
         }
     }
 };
 
 TEST_F(GapFillTest, RandomSparseMap) {
     std::mt19937 random(5);
-    Map map(kSize * kSize, glm::vec4(0, 0, 0, 1));
+    Map map(kSize * kSize, glm::vec4(0, 0, 0, 0.5f));
     for (int i = 0; i < 150; ++i) {
         glm::vec4& texel = map[random() % map.size()];
         for (int k = 0; k < 3; ++k) texel[k] = float(random() % 96) / 64.0f;

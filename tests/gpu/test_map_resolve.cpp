@@ -17,8 +17,10 @@ class MapResolveTest : public CameraPass {
     Resolved resolve(const std::vector<GLuint>& words, const View& view, int levels, double fluxPerFixed = 1.0) {
         const gl::Buffer map(words.size() * sizeof(GLuint), words.data(), GL_DYNAMIC_STORAGE_BIT, "map");
         const gl::Buffer ledger = makeLedger();
+        const gl::Texture receivers(kSize, kSize, GL_R32F, "receivers");
+        fillTexture(receivers, std::vector<glm::vec4>(kSize * kSize, glm::vec4(0.25f)));
         gl::Texture concentration;
-        render::MapResolve(shaders_).run({.map = map, .view = view, .size = kSize, .levels = levels, .firstTexel = 0,
+        render::MapResolve(shaders_).run({.map = map, .view = view, .receivers = receivers, .size = kSize, .levels = levels, .firstTexel = 0,
                                           .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = fluxPerFixed, .ledgerPerFixed = 1.0},
                                          concentration, ledger);
         glMemoryBarrier(GL_ALL_BARRIER_BITS);   // map and ledger -> read-back
@@ -80,6 +82,7 @@ TEST_F(MapResolveTest, DirectLightHasConcentrationOne) {
         }
         for (const glm::vec4& c : resolve(words, view, 1, unit).concentration) {
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], 1.0f, 2e-6f);   // float rounding of extents and products
+            EXPECT_EQ(c.a, 0.25f);                                        // the receiver's layer
         }
     }
 }
