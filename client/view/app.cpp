@@ -38,6 +38,7 @@ App::App(Options options)
       window_("caustream", options_.width, options_.height),
       connection_(connectionOptions(options_)),
       editor_(connection_, model_) {
+    window_.pressed = [this](int key) { handleKey(key); };
     window_.dropped = [this](const std::vector<std::string>& files) { showFile(files.front()); };
     model_.connection = "connecting to " + options_.address.text();
     if (!options_.scene.empty()) editor_.showScene({protocol::SceneRef::Kind::Builtin, options_.scene});
@@ -58,7 +59,6 @@ void App::run() {
         const int panelWidth = controls_.panel ? static_cast<int>(kPanelWidth * window_.scale()) : 0;
         const Rectangle area{0, 0, std::max(width - panelWidth, 16), std::max(height, 16)};
         window_.beginFrame();
-        handleKeys();
         handleMouse(picture_.fit(area));
         if (controls_.panel) drawPanel(model_, controls_, editor_, static_cast<float>(panelWidth));
         drawMessages(model_, static_cast<float>(area.width));
@@ -143,13 +143,13 @@ void App::handleMouse(const Rectangle& shown) {
     }
 }
 
-void App::handleKeys() {
+void App::handleKey(int key) {
     if (ImGui::GetIO().WantTextInput) return;
-    if (ImGui::IsKeyPressed(GLFW_KEY_S, false)) controls_.save = true;
-    if (ImGui::IsKeyPressed(GLFW_KEY_L, false)) controls_.leftDragsLight = !controls_.leftDragsLight;
-    if (ImGui::IsKeyPressed(GLFW_KEY_TAB, false)) controls_.panel = !controls_.panel;
-    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) window_.close();
-    if (ImGui::IsKeyPressed(GLFW_KEY_R, false) && model_.haveScene) {
+    if (key == GLFW_KEY_S) controls_.save = true;
+    if (key == GLFW_KEY_L) controls_.leftDragsLight = !controls_.leftDragsLight;
+    if (key == GLFW_KEY_TAB) controls_.panel = !controls_.panel;
+    if (key == GLFW_KEY_ESCAPE) window_.close();
+    if (key == GLFW_KEY_R && model_.haveScene) {
         model_.camera = model_.startCamera;
         editor_.cameraMoved();
     }

@@ -23,7 +23,7 @@ class App {
 
     void takeNews(double nowS);
     void handleMouse(const Rectangle& shown);
-    void handleKeys();
+    void handleKey(int key);
     void askForSize(int width, int height, double nowS);
     void showFile(const std::string& file);
     void startSaving(double nowS);

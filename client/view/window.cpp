@@ -25,6 +25,11 @@ void onDrop(GLFWwindow* window, int count, const char** paths) {
     if (self->dropped) self->dropped({paths, paths + count});
 }
 
+void onKey(GLFWwindow* window, int key, int, int action, int) {
+    auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    if (self->pressed && action == GLFW_PRESS) self->pressed(key);
+}
+
 }  // namespace
 
 Window::Window(const char* title, int width, int height) {
@@ -46,6 +51,7 @@ Window::Window(const char* title, int width, int height) {
     }
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, onDrop);
+    glfwSetKeyCallback(window_, onKey);  // before Dear ImGui's, which calls it in turn
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     float scaleY = 1.0f;

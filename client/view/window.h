@@ -14,8 +14,10 @@ class Window {
     ~Window();
     Window(const Window&) = delete;
 
-    // A file was dropped. Called from within waitEvents().
+    // Called from within waitEvents(): files were dropped; a key (GLFW_KEY_...) went down. Dear ImGui would miss a key
+    // that is up again before the next frame.
     std::function<void(const std::vector<std::string>&)> dropped;
+    std::function<void(int)> pressed;
 
     bool open() const;
     void close();

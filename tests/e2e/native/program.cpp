@@ -89,6 +89,18 @@ std::string Background::firstLine() {
     return line;
 }
 
+bool Background::ends() {
+    for (int i = 0; i < 300; ++i) {
+        int status = 0;
+        if (waitpid(pid_, &status, WNOHANG) == pid_) {
+            pid_ = 0;
+            return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+        }
+        usleep(100'000);
+    }
+    return false;
+}
+
 int Background::stop(int signal) {
     if (pid_ == 0) return 0;
     kill(pid_, signal);

@@ -30,6 +30,8 @@ class Background {
     std::string firstLine();
     pid_t pid() const { return pid_; }
     int stop(int signal);  // the exit code, as in Result
+    // It ended by itself within half a minute.
+    bool ends();
 
  private:
     pid_t pid_ = 0;
