@@ -4,7 +4,7 @@
 #include "common/false_colour.glsl"
 uniform sampler2D u_image;
 uniform float u_scale;
-uniform int u_height;      // of the output
+uniform ivec2 u_size;      // of the output
 uniform bool u_depthImage;
 layout(location = 0) out vec4 o_color;
 
@@ -26,8 +26,19 @@ vec3 shown(ivec2 at) {
 }
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.x, u_height - 1 - int(gl_FragCoord.y));
-#if DOWNSAMPLE
+    ivec2 at = ivec2(gl_FragCoord.x, u_size.y - 1 - int(gl_FragCoord.y));
+#if MODE >= 2
+    // A pass's image has a size of its own: shown whole, in the middle.
+    vec2 size = vec2(textureSize(u_image, 0));
+    vec2 zoom = vec2(u_size) / size;
+    vec2 place = (vec2(at) + 0.5 - 0.5 * vec2(u_size)) / min(zoom.x, zoom.y) + 0.5 * size;
+    at = ivec2(floor(place));
+    if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, size))) {
+        o_color = vec4(vec3(0.1), 1.0);
+        return;
+    }
+#endif
+#if DOWNSAMPLE && MODE < 2
     vec3 color = 0.25 * (shown(2 * at) + shown(2 * at + ivec2(1, 0)) + shown(2 * at + ivec2(0, 1)) +
                          shown(2 * at + ivec2(1, 1)));
 #else

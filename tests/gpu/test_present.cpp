@@ -66,6 +66,17 @@ TEST_F(PresentTest, TurnsRowsTopToBottom) {
     EXPECT_GT(out[0].r, out[1].r);
 }
 
+TEST_F(PresentTest, APassOfAnotherSizeIsShownWholeInTheMiddle) {
+    const gl::Texture image(2, 2, GL_RGBA32F, "input");
+    fillTexture(image, std::vector<glm::vec4>(4, {1, 0, -1, 1}));
+    Present(shaders_).run({.image = image.get(), .mode = Present::Mode::Normals}, 8, 4, GL_RGBA8, {shown_});
+    const auto out = readTexture(shown_);
+    for (int x = 0; x < 8; ++x) {
+        const bool inside = x >= 2 && x < 6;   // 4 x 4 pixels of 8 x 4
+        EXPECT_NEAR(out[static_cast<std::size_t>(x)].r, inside ? 1.0f : 0.1f, 0.01f) << x;
+    }
+}
+
 TEST_F(PresentTest, DownsampleAveragesAfterTheCurve) {
     // One pixel of four in a focus a thousand times white: a quarter of white in light, not white.
     const auto out = show({{1000, 1000, 1000, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}, 2, 2, {.downsample = true});

@@ -20,7 +20,7 @@ void Present::run(const Inputs& in, int width, int height, GLenum format, const 
     gl::Uniforms(program)
         .set("u_image", 0)
         .set("u_scale", in.scale)
-        .set("u_height", height)
+        .set("u_size", glm::ivec2(width, height))
         .set("u_depthImage", in.depthImage);
     glBindTextureUnit(0, in.image);
     glBindVertexArray(vertexArray_.get());
