@@ -11,6 +11,7 @@ namespace caustream::render {
 namespace {
 
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
+constexpr int kShadowSize = 1024;
 constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels
 constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
 
@@ -235,7 +236,7 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
     if (out.hasShadow) {
         out.shadowView = shadowView(in.scene, in.light);
         timer.stage("receiver_depth", [&] {
-            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, 1024, true, in.scene.outsideIndex}, out.shadow);
+            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, kShadowSize, true, in.scene.outsideIndex}, out.shadow);
         });
     }
     if (!in.plan.runs("photon_trace")) return;

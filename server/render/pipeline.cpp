@@ -203,7 +203,8 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
     timer.stage("camera_receivers", [&] {
         receivers.run({entry.gpu, scene.materials, lighting, view, width, height}, {color, depth});
     });
-    if (!plan.runs("dispersive_refraction")) return;
+    const bool receiversAlone = request.target == Target::Pass && request.pass == "camera_receivers";
+    if (!plan.runs("dispersive_refraction") || receiversAlone) return;
 
     // Casters from back to front, each into the picture of what is behind it.
     std::vector<const scene::Object*> order;

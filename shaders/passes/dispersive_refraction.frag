@@ -171,7 +171,11 @@ void main() {
     color += follow(kept, meanExit.xyz / meanExit.w, normalize(meanDir + 1e-9 * sight), meanGlass.x, meanGlass.y);
 #endif
 #endif
+#if SPLIT
     Sight mirror = look(pos, mirrored);
+#else
+    Sight mirror = Sight(vec2(0.5), 1.0, surroundings(mirrored));   // a few per cent of the light: blurred while it moves
+#endif
     color += reflected * radiance(mirror, mirror, 0.0) + keyHighlight(pos, mirrored, reflected);
     o_radiance = vec4(clamp(color, vec3(-6e4), vec3(6e4)), 1.0);
 }

@@ -222,10 +222,12 @@ void main() {
     vec2 at;
     Tally tally;
     Meeting meeting = Meeting(0.0, 0.0);
-    int longest = passThrough(entry, u_wavelengths - 1, u_backSteps, way, exitNormal, origin, ray, flux, tally);
-    if (longest == kLeaves) {
-        if (findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) != kHit) meeting.slope = 0.0;
-        if (u_levels > 1 && meeting.slope > 0.0) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
+    int passed = passThrough(entry, u_wavelengths - 1, u_backSteps, way, exitNormal, origin, ray, flux, tally);
+    bool allReflected = passed == kTotal, met = false;
+    if (passed == kLeaves) {
+        met = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) == kHit;
+        if (!met) meeting.slope = 0.0;
+        if (u_levels > 1 && met) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
     }
     Level pyramid = levelOf(level, textureSize(u_receivers, 0));
 
@@ -233,23 +235,13 @@ void main() {
     vec3 landed[kMostWavelengths];           // uv in the inner map, flux; no flux: nowhere
     float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0, lastWay = way;
     uvec2 unsettled = uvec2(0u);
-    int passed = kUnsettled;
-    bool met = false;
-    for (int k = u_wavelengths - 1; k >= 0; --k) {
+    int k = u_wavelengths - 1;
+    while (true) {
         float weight = u_glass[k].z;
         onCasters += weight * entry.flux;
-        // Glass that does not differ has no other way: white stays white at the rim too, where steps hardly settle.
-        if (k == u_wavelengths - 1 || u_glass[k].xy != u_glass[k + 1].xy) {
-            float guess = way + (way - lastWay);
-            lastWay = way;
-            way = guess;
-            flux = entry.flux;
-            passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
-            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
-        }
         landed[k] = vec3(at, met ? flux : 0.0);
         // One step may reflect a ray that would leave: it is searched again, unless the longest is reflected as well.
-        if (met || (passed == kTotal && longest == kTotal)) {
+        if (met || (passed == kTotal && allReflected)) {
             absorbed += weight * tally.absorbed;
             reflected += weight * tally.reflected;
             total += weight * tally.total;
@@ -257,6 +249,16 @@ void main() {
             unsettled.x |= 1u << k;
         } else {
             unsettled.y |= 1u << (k - 32);
+        }
+        if (--k < 0) break;
+        // Glass that does not differ has no other way: white stays white at the rim too, where steps hardly settle.
+        if (u_glass[k].xy != u_glass[k + 1].xy) {
+            float guess = way + (way - lastWay);
+            lastWay = way;
+            way = guess;
+            flux = entry.flux;
+            passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
+            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
         }
     }
     depositAll(landed, pyramid.fineSize, pyramid.fineFirst, 1.0 - pyramid.coarseShare);

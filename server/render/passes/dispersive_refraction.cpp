@@ -12,7 +12,7 @@ namespace caustream::render {
 
 namespace {
 
-constexpr std::size_t kNodes = 3, kSplitNodes = 8;  // traced exactly; the shader has room for 8
+constexpr std::size_t kNodes = 2, kSplitNodes = 8;  // traced exactly; the shader has room for 8
 constexpr int kSurroundings = 8;  // texels a side, as the shader says
 enum Unit : int { kFront, kBack, kReceiversDepth, kBackground, kSurroundingsUnit };
 
