@@ -7,12 +7,6 @@
 namespace caustream::render {
 
 namespace {
-GLuint createVertexArray() {
-    GLuint name = 0;
-    glCreateVertexArrays(1, &name);
-    return name;
-}
-
 gl::Texture upload(const scene::Texture& texture) {
     const int levels = 1 + static_cast<int>(std::log2(std::max(texture.width, texture.height)));
     gl::Texture out(texture.width, texture.height, GL_SRGB8_ALPHA8, "scene texture", levels);
@@ -25,7 +19,7 @@ gl::Texture upload(const scene::Texture& texture) {
 }  // namespace
 
 GpuScene::GpuScene(std::shared_ptr<const scene::Geometry> geometry)
-    : geometry_(std::move(geometry)), vertexArray_(createVertexArray()) {
+    : geometry_(std::move(geometry)), vertexArray_(gl::makeVertexArray()) {
     const auto& vertices = geometry_->vertices;
     const auto& indices = geometry_->indices;
     vertices_ = gl::Buffer(std::max<std::size_t>(vertices.size(), 1) * sizeof(scene::Vertex),

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.h"
+#include "session/random_id.h"
 
 namespace caustream::session {
 namespace {
@@ -16,16 +17,6 @@ using protocol::ErrorCode;
 
 tl::unexpected<DecodeError> fail(ErrorCode code, std::string message, std::string field) {
     return tl::unexpected(DecodeError{.code = code, .message = std::move(message), .field = std::move(field)});
-}
-
-std::string hex(std::span<const unsigned char> bytes) {
-    constexpr std::string_view digits = "0123456789abcdef";
-    std::string text;
-    for (const unsigned char byte : bytes) {
-        text += digits[byte >> 4];
-        text += digits[byte & 15];
-    }
-    return text;
 }
 
 }  // namespace

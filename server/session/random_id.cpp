@@ -9,11 +9,7 @@
 
 namespace caustream::session {
 
-std::string randomId() {
-    std::array<unsigned char, 16> bytes{};
-    if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
-        throw Error("random numbers are not available; check the installation of libcrypto");
-    }
+std::string hex(std::span<const unsigned char> bytes) {
     constexpr std::string_view digits = "0123456789abcdef";
     std::string text;
     for (const unsigned char byte : bytes) {
@@ -21,6 +17,14 @@ std::string randomId() {
         text += digits[byte & 15];
     }
     return text;
+}
+
+std::string randomId() {
+    std::array<unsigned char, 16> bytes{};
+    if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
+        throw Error("random numbers are not available; check the installation of libcrypto");
+    }
+    return hex(bytes);
 }
 
 }  // namespace caustream::session
