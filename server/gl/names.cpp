@@ -23,16 +23,6 @@ GLuint createBuffer() {
     glCreateBuffers(1, &name);
     return name;
 }
-
-std::size_t texelBytes(GLenum format) {
-    switch (format) {
-        case GL_RGBA32F: return 16;
-        case GL_RGBA16F: return 8;
-        case GL_RG32F: return 8;
-        case GL_R8: return 1;
-        default: return 4;
-    }
-}
 }  // namespace
 
 Texture::Texture(int width, int height, GLenum format, std::string_view text, int levels)
@@ -51,8 +41,6 @@ bool Texture::ensure(int width, int height, GLenum format, std::string_view text
     *this = Texture(width, height, format, text, levels);
     return true;
 }
-
-std::size_t Texture::bytes() const { return std::size_t(width_) * height_ * texelBytes(format_); }
 
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags, std::string_view text)
     : GlName(createBuffer()), bytes_(bytes) {

@@ -57,7 +57,6 @@ class Texture : public GlName<deleteTexture> {
     int width() const { return width_; }
     int height() const { return height_; }
     GLenum format() const { return format_; }
-    std::size_t bytes() const;
 
    private:
     int width_ = 0, height_ = 0, levels_ = 0;

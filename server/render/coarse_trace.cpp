@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/trigonometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "error.h"
 #include "optics/fresnel.h"
@@ -144,11 +145,6 @@ std::vector<Landing> CoarseTrace::trace(const scene::Scene& scene, const scene::
         }
     }
     return landings;
-}
-
-std::optional<float> CoarseTrace::receiverDistance(const glm::vec3& origin, const glm::vec3& direction) const {
-    const auto hit = impl_->intersect(impl_->receivers.get(), origin, direction, 0.0f);
-    return hit ? std::optional(hit->distance) : std::nullopt;
 }
 
 }  // namespace caustream::render

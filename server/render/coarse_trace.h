@@ -2,7 +2,6 @@
 #pragma once
 #include <glm/vec3.hpp>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "render/view.h"
@@ -27,9 +26,6 @@ class CoarseTrace {
     // interpolated normals, light lost to total reflection left out.
     std::vector<Landing> trace(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster,
                                const View& emission, int grid, const std::vector<double>& wavelengthsNm) const;
-
-    // Distance along unit `direction` to the first receiver.
-    std::optional<float> receiverDistance(const glm::vec3& origin, const glm::vec3& direction) const;
 
    private:
     struct Impl;

@@ -1,5 +1,7 @@
 // Which light throws the caustic, and the lights as the camera's passes see them.
 #pragma once
+#include <optional>
+
 #include "render/coarse_trace.h"
 #include "render/lighting.h"
 #include "scene/scene.h"

@@ -16,16 +16,12 @@ void ReceiverDepth::run(const Inputs& in, gl::Texture& depth) {
     const GLuint program = shaders_.program("receiver_depth");
     glUseProgram(program);
     gl::Uniforms(program).set("u_worldToClip", in.view.worldToClip());
-    draw(in);
-    glDisable(GL_DEPTH_TEST);
-}
-
-void ReceiverDepth::draw(const Inputs& in) {
     in.scene.bind();
     in.scene.drawWhere([&](const scene::Object& object) {
         const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
         return !material.caster || (in.casters && refracts(material, in.outsideIndex));
     });
+    glDisable(GL_DEPTH_TEST);
 }
 
 }  // namespace caustream::render

@@ -22,8 +22,6 @@ class ReceiverDepth {
 
     // Fills `depth` (DEPTH_COMPONENT32F, made anew if its size is another) with layer values of view.glsl.
     void run(const Inputs& in, gl::Texture& depth);
-    // The draws alone, into whatever depth buffer is bound with the depth_only program's view set.
-    static void draw(const Inputs& in);
 
    private:
     gl::ShaderLibrary& shaders_;
