@@ -1,5 +1,6 @@
 #include "tests/reference/reference.h"
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -49,6 +50,8 @@ Reference load(const std::string& name) {
     }
     reference.mono7 = readNpyGz(kFolder + "/" + name + "_mono7.npy.gz");
     reference.direct = readNpyGz(kFolder + "/" + name + "_direct.npy.gz");
+    const std::string xyz = kFolder + "/" + name + "_xyz.npy.gz";
+    if (std::filesystem::exists(xyz)) reference.xyz = readNpyGz(xyz);
     return reference;
 }
 

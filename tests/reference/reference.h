@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Reference {
     std::vector<double> nm;          // of the bands of mono7
     std::vector<double> windowFlux;  // of each band, as the tracer summed it
     Array mono7;                     // [nm][j][i] irradiance of the caustic alone for 1 W/sr; no direct light
+    std::optional<Array> xyz;  // [3][j][i] CIE XYZ of a flat spectrum, continuous in wavelength; the prism alone has it
     Array direct;  // [j][i] direct irradiance cos / r^2, 0 in the caster's shadow and outside the cone
 };
 

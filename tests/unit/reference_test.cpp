@@ -24,6 +24,14 @@ TEST_P(References, MapsHoldTheFluxTheirJsonSays) {
     }
 }
 
+// Only the prism disperses enough to need its continuous spectrum.
+TEST(ReferenceXyz, PrismHasItsContinuousSpectrum) {
+    const Reference prism = load("prism");
+    ASSERT_TRUE(prism.xyz);
+    EXPECT_EQ(prism.xyz->shape, (std::vector<std::size_t>{3, 256, 256}));
+    EXPECT_FALSE(load("sphere").xyz);
+}
+
 TEST_P(References, SceneIsWhatTheJsonSays) {
     const Reference reference = load(GetParam());
     const std::vector<std::uint8_t> glb = makeGlb(reference);
