@@ -17,7 +17,9 @@ inline constexpr Choice<std::size_t> kDispersions[] = {{"constant", 0}, {"cauchy
 inline constexpr Choice<bool> kExposures[] = {{"auto", true}, {"ev", false}};
 inline constexpr Choice<bool> kQualities[] = {{"auto", true}, {"fixed", false}};
 inline constexpr Choice<bool> kCookies[] = {{"none", false}, {"texture", true}};
-inline constexpr Choice<int> kTransportModes[] = {{"refined", 0}};
+inline constexpr Choice<TransportMode> kTransportModes[] = {{"refined", TransportMode::Refined},
+                                                            {"thesis", TransportMode::Thesis}};
+inline constexpr std::string_view kContinuousName = "continuous";
 inline constexpr Choice<bool> kBands[] = {{"rgb", false}, {"wavelengths", true}};
 inline constexpr Choice<Encoding> kEncodings[] = {
     {"jpeg", Encoding::Jpeg}, {"png", Encoding::Png}, {"raw", Encoding::Raw}};

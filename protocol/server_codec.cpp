@@ -112,12 +112,22 @@ PlanEntry decodePlanEntry(const Item& item) {
     return entry;
 }
 
+ErrorEstimate decodeErrorEstimate(const Item& item) {
+    Fields in(item);
+    ErrorEstimate error{in.at("sampling").number(0, kAnyNumber), in.at("spectral").number(0, kAnyNumber),
+                        in.at("total").number(0, kAnyNumber)};
+    in.finish();
+    return error;
+}
+
 ServerMessage decodeStats(Fields& in) {
     Stats stats;
     stats.frameSeq = in.at("frame_seq").u32();
     stats.stages = decodeList(in.at("stages"), decodeStage);
     stats.plan = decodeList(in.at("plan"), decodePlanEntry);
     if (const auto v = in.find("ledger")) stats.ledger = decodeLedger(*v);
+    if (const auto v = in.find("error")) stats.error = decodeErrorEstimate(*v);
+    if (const auto v = in.find("choice")) stats.choice = v->text(kSentenceBytes);
     stats.photons = in.at("photons").u32();
     stats.renderMs = in.at("render_ms").number(0, kAnyNumber);
     stats.encodeMs = in.at("encode_ms").number(0, kAnyNumber);
@@ -253,6 +263,9 @@ std::string encode(const Stats& stats) {
                  {"exposure_ev", stats.exposureEv},
                  {"warnings", stats.warnings}};
     if (stats.ledger) json["ledger"] = toJson(*stats.ledger);
+    if (stats.error)
+        json["error"] = {{"sampling", stats.error->sampling}, {"spectral", stats.error->spectral}, {"total", stats.error->total}};
+    if (!stats.choice.empty()) json["choice"] = stats.choice;
     return text(json);
 }
 

@@ -163,11 +163,17 @@ struct Ledger {  // flux over the flux per steradian on the light's axis: sr (m^
            noReceiver = 0;
     bool operator==(const Ledger&) const = default;
 };
+struct ErrorEstimate {  // of the spectral map: relative L1 of luminance
+    double sampling = 0.0, spectral = 0.0, total = 0.0;
+    bool operator==(const ErrorEstimate&) const = default;
+};
 struct Stats {  // of the newest frame
     std::uint32_t frameSeq = 0;
     std::vector<StageTime> stages;
     std::vector<PlanEntry> plan;
     std::optional<Ledger> ledger;  // nothing: not counted for this frame
+    std::optional<ErrorEstimate> error;  // nothing: no map, or one whose transport cannot tell
+    std::string choice;                  // what budget_ms or target_error chose, and why; empty: not asked
     std::uint32_t photons = 0;
     double renderMs = 0.0, encodeMs = 0.0;
     std::uint32_t window = 0, dropped = 0;  // acknowledgement window; frames replaced before they were sent

@@ -113,14 +113,23 @@ struct CameraState {
     bool operator==(const CameraState&) const = default;
 };
 
-struct TransportState {                 // mode is "refined", the only one of this version
-    int wavelengths = 7;                // 1..64; ignored when wavelengthsNm is given
+enum class TransportMode { Refined, Thesis };
+
+inline constexpr int kContinuous = 0;   // of TransportState::wavelengths
+inline constexpr int kContinuousBands = 7;  // wavelengths of a map in bands that asks for "continuous"
+
+struct TransportState {
+    TransportMode mode = TransportMode::Refined;
+    int wavelengths = 7;                // 1..64 or kContinuous; ignored when wavelengthsNm is given
     std::vector<double> wavelengthsNm;  // exact wavelengths, ascending
     int photonGrid = 0;                 // 0: chosen by the server
     int mapSize = 512;
     int backSteps = 4;
     int receiverSteps = 6;
     bool gapFill = false, filter = true, forceDispersive = false;
+    int hierarchyLevels = 3;            // thesis: of the photon hierarchy
+    double budgetMs = 0.0;              // 0: none
+    double targetError = 0.0;           // relative L1 of the map; 0: none
     bool operator==(const TransportState&) const = default;
 };
 

@@ -77,15 +77,30 @@ CameraState decodeCamera(const Item& item) {
     return camera;
 }
 
+// What the fields of `transport` must be together.
+void checkTransport(const Item& item, const TransportState& transport) {
+    const auto contradict = [&](const char* field, const char* message) {
+        Item(&item.json(), &item, field, 0, item.decoding()).fail(ErrorCode::BadRequest, message);
+    };
+    const int count = transport.wavelengths;
+    const bool published = transport.wavelengthsNm.empty() && (count == kContinuous || count == 1 || count == 7 || count == 21);
+    if (transport.mode == TransportMode::Thesis && !published)
+        contradict("wavelengths", "mode \"thesis\" has the colours of 1, 7 or 21 wavelengths; \"continuous\" means 7 to it");
+    if (transport.budgetMs > 0 && transport.targetError > 0)
+        contradict("target_error", "set either this or budget_ms to more than 0");
+}
+
 TransportState decodeTransport(const Item& item, const Limits& limits) {
     Fields in(item);
     TransportState transport;
-    if (const auto v = in.find("mode")) v->oneOf(kTransportModes);
+    if (const auto v = in.find("mode")) transport.mode = v->oneOf(kTransportModes);
     if (const auto v = in.find("wavelengths")) {
         if (v->json().is_array())
             transport.wavelengthsNm = v->ascending(1, limits.bands, kBandMinNm, kBandMaxNm);
+        else if (v->json() == kContinuousName)
+            transport.wavelengths = kContinuous;
         else if (v->json().is_string())
-            v->fail(ErrorCode::Unsupported, "must be a count or an array of nm");
+            v->fail(ErrorCode::Unsupported, "must be \"continuous\", a count or an array of nm");
         else
             transport.wavelengths = v->integerInt(1, int(limits.bands));
     }
@@ -103,7 +118,11 @@ TransportState decodeTransport(const Item& item, const Limits& limits) {
     if (const auto v = in.find("gap_fill")) transport.gapFill = v->boolean();
     if (const auto v = in.find("filter")) transport.filter = v->boolean();
     if (const auto v = in.find("force_dispersive")) transport.forceDispersive = v->boolean();
+    if (const auto v = in.find("hierarchy_levels")) transport.hierarchyLevels = v->integerInt(1, 6);
+    if (const auto v = in.find("budget_ms")) transport.budgetMs = v->number(0, 60000);
+    if (const auto v = in.find("target_error")) transport.targetError = v->number(0, 1);
     in.finish();
+    checkTransport(item, transport);
     return transport;
 }
 
@@ -148,8 +167,9 @@ void checkMapBytes(const Item& root, const State& state, const Limits& limits) {
     if (state.stream.target != Target::Spectral) return;
     std::uint64_t bands = 3;
     if (state.stream.wavelengthBands) {
-        bands = state.transport.wavelengthsNm.empty() ? std::uint64_t(state.transport.wavelengths)
-                                                      : state.transport.wavelengthsNm.size();
+        bands = !state.transport.wavelengthsNm.empty()             ? state.transport.wavelengthsNm.size()
+                : state.transport.wavelengths == kContinuous ? std::uint64_t(kContinuousBands)
+                                                             : std::uint64_t(state.transport.wavelengths);
         for (const auto& [name, light] : state.lights)
             if (light.spectrum && std::holds_alternative<Lines>(*light.spectrum))
                 bands = std::max<std::uint64_t>(bands, std::get<Lines>(*light.spectrum).nm.size());

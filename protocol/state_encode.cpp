@@ -54,15 +54,20 @@ Json toJson(const CameraState& camera) {
 
 Json toJson(const TransportState& transport) {
     return {
-        {"mode", kTransportModes[0].name},
-        {"wavelengths", transport.wavelengthsNm.empty() ? Json(transport.wavelengths) : Json(transport.wavelengthsNm)},
+        {"mode", nameOf(kTransportModes, transport.mode)},
+        {"wavelengths", !transport.wavelengthsNm.empty()           ? Json(transport.wavelengthsNm)
+                        : transport.wavelengths == kContinuous ? Json(kContinuousName)
+                                                               : Json(transport.wavelengths)},
         {"photon_grid", transport.photonGrid},
         {"map_size", transport.mapSize},
         {"back_steps", transport.backSteps},
         {"receiver_steps", transport.receiverSteps},
         {"gap_fill", transport.gapFill},
         {"filter", transport.filter},
-        {"force_dispersive", transport.forceDispersive}};
+        {"force_dispersive", transport.forceDispersive},
+        {"hierarchy_levels", transport.hierarchyLevels},
+        {"budget_ms", transport.budgetMs},
+        {"target_error", transport.targetError}};
 }
 
 Json toJson(const StreamState& stream) {

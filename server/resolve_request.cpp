@@ -55,7 +55,8 @@ Sample sampleOf(const render::Frame& frame) {
 }
 
 render::Transport transportOf(const protocol::TransportState& wanted) {
-    return {.wavelengths = wanted.wavelengths,
+    return {.mode = wanted.mode == protocol::TransportMode::Thesis ? render::Mode::Thesis : render::Mode::Refined,
+            .wavelengths = wanted.wavelengths,
             .wavelengthsNm = wanted.wavelengthsNm,
             .photonGrid = wanted.photonGrid,
             .mapSize = wanted.mapSize,
@@ -63,7 +64,10 @@ render::Transport transportOf(const protocol::TransportState& wanted) {
             .receiverSteps = wanted.receiverSteps,
             .gapFill = wanted.gapFill,
             .filter = wanted.filter,
-            .forceDispersive = wanted.forceDispersive};
+            .forceDispersive = wanted.forceDispersive,
+            .hierarchyLevels = wanted.hierarchyLevels,
+            .budgetMs = wanted.budgetMs,
+            .targetError = wanted.targetError};
 }
 
 }  // namespace
@@ -71,6 +75,9 @@ render::Transport transportOf(const protocol::TransportState& wanted) {
 tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
                                                          std::shared_ptr<const scene::Scene> scene) {
     const protocol::StreamState& stream = state.stream;
+    if (state.transport.mode == protocol::TransportMode::Thesis) {
+        return unsupported("this server has no thesis mode", "transport.mode");
+    }
     if (auto checked = checkStream(stream); !checked) {
         return tl::unexpected(std::move(checked.error()));
     }
@@ -149,6 +156,8 @@ protocol::Stats frameStats(const render::Frame& frame) {
         stats.ledger = protocol::Ledger{ledger.onCasters,       ledger.deposited, ledger.absorbed, ledger.reflected,
                                         ledger.totalReflection, ledger.rejected,  ledger.leftMap,  ledger.noReceiver};
     }
+    if (const auto& error = frame.stats.error) stats.error = {error->sampling, error->spectral, error->total};
+    stats.choice = frame.stats.choice;
     stats.photons = frame.stats.photons;
     stats.renderMs = frame.stats.renderMs;
     stats.exposureEv = frame.stats.exposureEv;

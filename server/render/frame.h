@@ -11,8 +11,13 @@
 
 namespace caustream::render {
 
+enum class Mode { Refined, Thesis };        // Thesis: as published (Blanchette 2012), the baseline of comparisons
+
+constexpr int kContinuous = 0;              // of Transport::wavelengths
+
 struct Transport {
-    int wavelengths = 7;                    // 1..64; ignored when wavelengthsNm is given
+    Mode mode = Mode::Refined;
+    int wavelengths = 7;                    // 1..64 exact ones, or kContinuous; ignored when wavelengthsNm is given
     std::vector<double> wavelengthsNm;      // exact wavelengths, ascending, instead of the uniform ones
     int photonGrid = 0;                     // photons per side of each caster's emission view; 0: chosen for the GPU
     int mapSize = 512;                      // texels per side of the spectral map
@@ -21,6 +26,9 @@ struct Transport {
     bool gapFill = false;                   // the thesis's gap filling
     bool filter = true;                     // smooth the map where photons are sparse
     bool forceDispersive = false;           // trace all wavelengths even where the glass does not disperse
+    int hierarchyLevels = 3;                // Thesis: levels of the photon hierarchy, 1..6
+    double budgetMs = 0.0;                  // choose the configuration of least error that takes no longer; 0: as given
+    double targetError = 0.0;               // choose the fastest whose map is this accurate (relative L1); 0: as given
     bool operator==(const Transport&) const = default;
 };
 
@@ -57,10 +65,19 @@ struct EnergyLedger {
            noReceiver = 0;
 };
 
+// How wrong the spectral map may be: relative L1, of luminance.
+struct ErrorEstimate {
+    double sampling = 0.0;                  // too few photons: from two interleaved halves of them
+    double spectral = 0.0;                  // too few wavelengths
+    double total = 0.0;
+};
+
 struct FrameStats {
     std::vector<StageTime> stages;
     std::vector<PlanEntry> plan;
     EnergyLedger ledger;
+    std::optional<ErrorEstimate> error;     // nothing: no map, or one whose transport cannot tell
+    std::string choice;                     // what budgetMs or targetError chose, and why; empty: not asked
     std::uint32_t photons = 0;              // traced for the map that this frame shows, times no wavelengths
     double renderMs = 0.0;
     double exposureEv = 0.0;                // the one used

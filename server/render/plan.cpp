@@ -12,7 +12,8 @@ bool RenderPlan::runs(const std::string& pass) const {
 RenderPlan makePlan(const PlanFacts& facts, const Request& request) {
     RenderPlan plan;
     const Transport& transport = request.transport;
-    const int asked = transport.wavelengthsNm.empty() ? transport.wavelengths : static_cast<int>(transport.wavelengthsNm.size());
+    const int asked = !transport.wavelengthsNm.empty() ? static_cast<int>(transport.wavelengthsNm.size())
+                      : transport.wavelengths == kContinuous ? 7 : transport.wavelengths;
     if (facts.dispersive || transport.forceDispersive || request.wavelengthBands || !transport.wavelengthsNm.empty()) {
         plan.wavelengths = asked;
         plan.wavelengthReason = facts.dispersive ? "the glass disperses" : "asked for";

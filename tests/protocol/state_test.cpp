@@ -21,8 +21,9 @@ TEST(State, AnEmptyDocumentIsEveryDefault) {
         toJson(State{}).dump(),
         R"({"camera":{"exposure":["auto"]},"environment":{},"lights":{},"materials":{},"scene":["builtin","gem"],)"
         R"("stream":{"bands":"rgb","encoding":"jpeg","height":512,"max_fps":60.0,"quality":["auto"],"sample":"u8",)"
-        R"("target":"composite","width":512},"transport":{"back_steps":4,"filter":true,"force_dispersive":false,)"
-        R"("gap_fill":false,"map_size":512,"mode":"refined","photon_grid":0,"receiver_steps":6,"wavelengths":7}})");
+        R"("target":"composite","width":512},"transport":{"back_steps":4,"budget_ms":0.0,"filter":true,)"
+        R"("force_dispersive":false,"gap_fill":false,"hierarchy_levels":3,"map_size":512,"mode":"refined","photon_grid":0,)"
+        R"("receiver_steps":6,"target_error":0.0,"wavelengths":7}})");
 }
 
 TEST(State, EveryFieldComesBack) {
@@ -98,8 +99,7 @@ TEST(State, OnlyKnownChoicesAreTaken) {
     for (const auto& [document, field] : std::vector<std::pair<const char*, const char*>>{
              {R"({"scene":["file","/etc/passwd"]})", "scene[0]"},
              {R"({"transport":{"mode":"traced"}})", "transport.mode"},
-             {R"({"transport":{"mode":"thesis"}})", "transport.mode"},
-             {R"({"transport":{"wavelengths":"continuous"}})", "transport.wavelengths"},
+             {R"({"transport":{"wavelengths":"endless"}})", "transport.wavelengths"},
              {R"({"stream":{"encoding":"zstd"}})", "stream.encoding"},
              {R"({"stream":{"sample":"u16"}})", "stream.sample"},
              {R"({"stream":{"bands":"cmyk"}})", "stream.bands"},
@@ -147,9 +147,21 @@ TEST(State, TaggedArraysHaveTheirOwnLengths) {
                                  R"({"transport":{"wavelengths":[]}})",
                                  R"({"transport":{"wavelengths":[500,450]}})",
                                  R"({"transport":{"gap_fill":1}})",
+                                 R"({"transport":{"mode":"thesis","wavelengths":8}})",
+                                 R"({"transport":{"mode":"thesis","wavelengths":[500]}})",
+                                 R"({"transport":{"budget_ms":16,"target_error":0.01}})",
                                  R"({"environment":{"color":5}})"}) {
         const auto state = decodeState(Json::parse(document));
         EXPECT_FALSE(state.has_value()) << document;
+    }
+}
+
+TEST(State, WavelengthsMayBeContinuous) {
+    for (const char* mode : {"refined", "thesis"}) {
+        const auto state = decodeState(Json{{"transport", {{"mode", mode}, {"wavelengths", "continuous"}}}});
+        ASSERT_TRUE(state.has_value()) << mode;
+        EXPECT_EQ(state->transport.wavelengths, kContinuous);
+        EXPECT_EQ(toJson(*state).at("transport").at("wavelengths"), "continuous");
     }
 }
 
