@@ -1,13 +1,14 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <map>
+#include <memory>
 #include <vector>
 
-#include "bench/benchmarks.h"
+#include "bench/commands.h"
+#include "bench/statistics.h"
 #include "error.h"
 #include "gl/context.h"
 #include "gl/shader_library.h"
@@ -18,10 +19,12 @@ namespace caustream::bench {
 
 namespace {
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
-}
+struct FrameOptions {
+    std::string scene = "sphere", gpu = "auto";
+    int frames = 30;            // counted, after a warm-up of a sixth as many
+    int photonGrid = 180;       // about 25,500 photons on the sphere
+    int size = 512;             // of picture and map
+};
 
 struct Measured {
     double ms = 0;                            // median of whole frames
@@ -81,19 +84,8 @@ void print(const char* what, const Measured& m) {
     std::fflush(stdout);
 }
 
-}  // namespace
-
-double calibrationMs() {
-    const auto start = std::chrono::steady_clock::now();
-    const volatile double seed = 1.0;   // volatile at both ends, or the loop is moved out of the clock
-    double x = seed;
-    for (int i = 0; i < 50'000'000; ++i) x = x * 0.999999999 + 1e-9;
-    const volatile double kept = x;
-    static_cast<void>(kept);
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-int frameTime(const FrameOptions& options) {
+// Whole frames through the pipeline after a light move and after a camera move.
+void frameTime(const FrameOptions& options) {
     const auto context = gl::Context::create({.gpu = options.gpu});
     gl::ShaderLibrary shaders;
     render::Pipeline pipeline(*context, shaders);
@@ -123,7 +115,19 @@ int frameTime(const FrameOptions& options) {
     std::printf("each further one         %.1f ns a photon and wavelength\n", 1e6 * (many.ms - seven.ms) / (14.0 * many.photons));
     std::printf("33%% / 2.5%% of the cone   %.2f\n", near.ms / far.ms);
     std::printf("camera / light move      %.2f\n", camera.ms / seven.ms);
-    return 0;
+}
+
+}  // namespace
+
+void addFrame(CLI::App& app) {
+    const auto options = std::make_shared<FrameOptions>();
+    CLI::App* command = app.add_subcommand("frame", "render times in this process, pass by pass");
+    command->add_option("--scene", options->scene, "a built-in scene")->capture_default_str();
+    command->add_option("--gpu", options->gpu, "auto, software, an index or part of a name")->capture_default_str();
+    command->add_option("--frames", options->frames, "frames counted")->check(CLI::Range(3, 10000))->capture_default_str();
+    command->add_option("--photon-grid", options->photonGrid, "photons a side")->check(CLI::Range(16, 2048))->capture_default_str();
+    command->add_option("--size", options->size, "pixels and map texels a side")->check(CLI::Range(64, 2048))->capture_default_str();
+    command->callback([options] { frameTime(*options); });
 }
 
 }  // namespace caustream::bench

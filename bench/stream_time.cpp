@@ -1,18 +1,22 @@
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <vector>
 
-#include "bench/benchmarks.h"
+#include "bench/commands.h"
+#include "bench/statistics.h"
 #include "client/connection/connection.h"
 #include "error.h"
 
 namespace caustream::bench {
 
 namespace {
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
-}
+
+struct StreamOptions {
+    std::string url = "http://127.0.0.1:9720";
+    std::string scene = "sphere";
+    int frames = 60;
+};
 
 // Waits for the frame that shows input `seq` or a later one; frames before it are acknowledged and dropped.
 connection::Frame frameOf(connection::Connection& connection, std::uint32_t seq) {
@@ -30,9 +34,8 @@ connection::Frame frameOf(connection::Connection& connection, std::uint32_t seq)
     }
     throw Error("no frame within 20 s; is the server busy with other viewers?");
 }
-}  // namespace
-
-int streamTime(const StreamOptions& options) {
+// Frames of a moving light through the socket: what encoding, sending and decoding add to rendering.
+void streamTime(const StreamOptions& options) {
     const auto address = connection::parseAddress(options.url);
     if (!address) throw Error(address.error());
     connection::Connection connection({.address = *address, .clientName = "caustream-bench"});
@@ -68,7 +71,17 @@ int streamTime(const StreamOptions& options) {
     std::printf("  held for the socket    %.2f ms\n", median(hold));
     std::printf("  decode                 %.2f ms\n", median(decode));
     std::printf("added to rendering       %.2f ms\n", median(added));
-    return 0;
+}
+
+}  // namespace
+
+void addStream(CLI::App& app) {
+    const auto options = std::make_shared<StreamOptions>();
+    CLI::App* command = app.add_subcommand("stream", "what the socket adds, with a server that runs already");
+    command->add_option("--url", options->url, "the server")->capture_default_str();
+    command->add_option("--scene", options->scene, "a built-in scene")->capture_default_str();
+    command->add_option("--frames", options->frames, "frames counted")->check(CLI::Range(3, 10000))->capture_default_str();
+    command->callback([options] { streamTime(*options); });
 }
 
 }  // namespace caustream::bench

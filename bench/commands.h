@@ -1,0 +1,11 @@
+// What caustream-bench can do: each adds its subcommand, with options and what it runs. Everything prints; nothing asserts.
+// A command that has failed throws Error, or CLI::RuntimeError with an exit status when all has been said.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace caustream::bench {
+
+void addFrame(CLI::App& app);    // render times in this process
+void addStream(CLI::App& app);   // what the socket adds
+
+}  // namespace caustream::bench
