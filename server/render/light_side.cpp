@@ -168,7 +168,7 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
 void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
     const int size = in.transport.mapSize, levels = levelsOf(in.transport);
     const std::size_t texels = pyramidTexels(size, levels), outer = kOuterMapSize * kOuterMapSize;
-    map_.ensure(3 * (texels + outer) * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
+    map_.ensure(layout::kMapWords * (texels + outer) * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
     glClearNamedBufferData(map_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 
     glm::dvec3 sum(0.0);
@@ -188,7 +188,7 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                     GL_TEXTURE_UPDATE_BARRIER_BIT);   // map -> camera_receivers, gap_fill, read-back
-    if (in.hash) out.mapHash = fnv1a(kFnvStart, readWords(map_, 3 * (texels + outer)));
+    if (in.hash) out.mapHash = fnv1a(kFnvStart, readWords(map_, layout::kMapWords * (texels + outer)));
 }
 
 void LightSide::traceBands(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {

@@ -1,6 +1,13 @@
 // Fixed-point deposits into the spectral map's pyramid (kBindMap), 2x2 bilinear: the sums are the same whatever the
 // order. Expects u_fixedPerFlux, u_xyz and, with BANDS, u_bands and u_glass of photon_trace.
 
+// Which half of the photons this one belongs to, 0 or 1; set it before the first deposit. Luminance is kept apart by
+// halves: how much they differ tells how much too few photons cost.
+int photonHalf = 0;
+
+// Neighbours on the grid belong to different halves.
+int halfOf(ivec2 texel) { return (texel.x ^ texel.y) & 1; }
+
 // Where a photon lands: the lowest of 2x2 texels and the place between them. Texels beyond the border give their share
 // to their neighbour.
 struct Place {
@@ -54,9 +61,10 @@ void depositAll(vec3 landed[kMostWavelengths], ivec2 size, int firstTexel, float
 #else
 void addTo(int texel, vec3 xyz) {
     uvec3 amount = uvec3(xyz + 0.5);
-    atomicAdd(map[texel * 3], amount.x);
-    atomicAdd(map[texel * 3 + 1], amount.y);
-    atomicAdd(map[texel * 3 + 2], amount.z);
+    int first = texel * kMapWords;
+    atomicAdd(map[first + kMapX], amount.x);
+    atomicAdd(map[first + kMapEvenY + photonHalf], amount.y);
+    atomicAdd(map[first + kMapZ], amount.z);
 }
 
 void deposit(Place place, int k, float flux) {

@@ -8,7 +8,7 @@ layout(local_size_x = kGroupSize) in;
 layout(std430, binding = kBindLedger) buffer Ledger { uint ledger[]; };
 layout(rgba32f, binding = 0) uniform writeonly image2D u_out;
 
-uniform usamplerBuffer u_map;        // XYZ of each texel: one fetch where a storage buffer takes three loads
+uniform usamplerBuffer u_map;        // kMapWords of each texel: one fetch where a storage buffer takes four loads
 uniform sampler2D u_above;           // XYZ in fixed-point units per texel of the next coarser level
 uniform bool u_hasAbove;
 uniform int u_firstTexel;            // of this level in the buffer
@@ -27,7 +27,8 @@ void main() {
     for (int i = first; i < min(first + kScanTexels, size.x * size.y); ++i) {
         ivec2 texel = ivec2(i % size.x, i / size.x);
         vec2 uv = (vec2(texel) + 0.5) / vec2(size);
-        vec3 xyz = vec3(texelFetch(u_map, u_firstTexel + i).xyz);
+        uvec4 words = texelFetch(u_map, u_firstTexel + i);
+        vec3 xyz = vec3(words.x, words.y + words.z, words.w);
         if (u_hasAbove) xyz += 0.25 * textureLod(u_above, uv, 0.0).xyz;
 #if FINEST
         deposited += xyz.y;

@@ -118,7 +118,9 @@ void main() {
     if (item >= retryCount) return;
     uvec4 retry = retries[item];
     ivec2 size = textureSize(u_front, 0);
-    Entry entry = entryAt(ivec2(retry.x % uint(size.x), retry.x / uint(size.x)));
+    ivec2 texel = ivec2(retry.x % uint(size.x), retry.x / uint(size.x));
+    photonHalf = halfOf(texel);
+    Entry entry = entryAt(texel);
     float guess = guessWay(entry);
     ivec2 innerSize = textureSize(u_receivers, 0);
     ivec2 outerSize = textureSize(u_outerReceivers, 0);
@@ -214,6 +216,7 @@ void main() {
     ivec2 size = textureSize(u_front, 0);
     uint index = texels[photon];
     ivec2 texel = ivec2(index % uint(size.x), index / uint(size.x));
+    photonHalf = halfOf(texel);
     Entry entry = entryAt(texel);
 
     // The longest wavelength's way, and how far its neighbours land

@@ -11,6 +11,10 @@ LAYOUT_CONST kMostWavelengths = 64;
 LAYOUT_CONST kGroupSize = 64;          // threads of a one-dimensional compute group
 LAYOUT_CONST kScanTexels = 16;         // texels one thread of photon_list looks at
 LAYOUT_CONST kMostLevels = 5;          // of the map's pyramid: a photon may be spread over 16 texels
+LAYOUT_CONST kMapWords = 4;           // uints a texel of the map: X, Y of the even photons, Y of the odd ones, Z
+LAYOUT_CONST kMapX = 0;
+LAYOUT_CONST kMapEvenY = 1;            // odd: the next
+LAYOUT_CONST kMapZ = 3;
 LAYOUT_CONST kListHeader = 4;          // uints before a photon list's texels: the dispatch size (3), the photon count
 
 // Shader storage bindings

@@ -32,7 +32,7 @@ class MapResolveTest : public CameraPass {
         for (int i = 0; i < level; ++i) first += std::size_t(kSize >> i) * std::size_t(kSize >> i);
         return first;
     }
-    static std::vector<GLuint> emptyMap(int levels) { return std::vector<GLuint>(3 * firstOf(levels)); }
+    static std::vector<GLuint> emptyMap(int levels) { return std::vector<GLuint>(layout::kMapWords * firstOf(levels)); }
 
     // Parallel, one texel 1 m^2: concentration is flux per texel.
     static View unitView() { return parallelView({0, 0, 3}, {0, 0, 0}, kSize / 2.0f); }
@@ -44,8 +44,9 @@ TEST_F(MapResolveTest, EveryLevelKeepsItsSumBordersIncluded) {
         for (const glm::ivec2 texel : {glm::ivec2(0, 0), glm::ivec2(side - 1, 0), glm::ivec2(0, side / 2), glm::ivec2(side - 1, side - 1),
                                        glm::ivec2(side / 2, side / 2), glm::ivec2(1, 1)}) {
             std::vector<GLuint> words = emptyMap(layout::kMostLevels);
-            const std::size_t at = 3 * (firstOf(level) + std::size_t(texel.y * side + texel.x));
-            words[at] = 1u << 20, words[at + 1] = 1u << 21, words[at + 2] = 1u << 22;
+            const std::size_t at = layout::kMapWords * (firstOf(level) + std::size_t(texel.y * side + texel.x));
+            words[at + layout::kMapX] = 1u << 20, words[at + layout::kMapZ] = 1u << 22;
+            words[at + layout::kMapEvenY] = 3u << 19, words[at + layout::kMapEvenY + 1] = 1u << 19;
             const Resolved resolved = resolve(words, unitView(), layout::kMostLevels);
             glm::dvec3 sum(0.0);
             for (const glm::vec4& c : resolved.concentration) sum += glm::dvec3(c);
@@ -58,7 +59,7 @@ TEST_F(MapResolveTest, EveryLevelKeepsItsSumBordersIncluded) {
 
 TEST_F(MapResolveTest, CoarseTexelSpreadsAroundItsPlace) {
     std::vector<GLuint> words = emptyMap(3);
-    words[3 * (firstOf(2) + 5 * (kSize >> 2) + 9) + 1] = 1u << 20;
+    words[layout::kMapWords * (firstOf(2) + 5 * (kSize >> 2) + 9) + layout::kMapEvenY] = 1u << 20;
     const Resolved resolved = resolve(words, unitView(), 3);
     glm::dvec2 centroid(0.0);
     for (int i = 0; i < kSize * kSize; ++i) {
@@ -72,13 +73,13 @@ TEST_F(MapResolveTest, DirectLightHasConcentrationOne) {
     const double fluxPerFixed = 1e-12;
     const View wide = lookingAt({0, 0, 3}, {0, 0, 0}, 100.0f);   // texels of very different solid angle
     for (const View& view : {unitView(), wide}) {
-        std::vector<GLuint> words(3 * kSize * kSize);
+        std::vector<GLuint> words(layout::kMapWords * kSize * kSize);
         const double unit = view.perspective ? fluxPerFixed : 1e-9;
         for (int i = 0; i < kSize * kSize; ++i) {
             const glm::dvec2 xy = (2.0 * (glm::dvec2(i % kSize, i / kSize) + 0.5) / double(kSize) - 1.0) * glm::dvec2(view.halfExtent);
             const double r2 = 1.0 + glm::dot(xy, xy), area = 4.0 * double(view.halfExtent.x) * double(view.halfExtent.y) / (kSize * kSize);
             const double extent = view.perspective ? area / (r2 * std::sqrt(r2)) : area;
-            for (int c = 0; c < 3; ++c) words[std::size_t(3 * i + c)] = GLuint(std::lround(extent / unit));
+            for (const int word : {layout::kMapX, layout::kMapEvenY, layout::kMapZ}) words[std::size_t(layout::kMapWords * i + word)] = GLuint(std::lround(extent / unit));
         }
         for (const glm::vec4& c : resolve(words, view, 1, unit).concentration) {
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], 1.0f, 2e-6f);   // float rounding of extents and products

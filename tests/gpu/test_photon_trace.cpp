@@ -59,7 +59,7 @@ class PhotonTraceTest : public CameraPass {
         std::size_t texels = kSize * kSize;
         for (int level = 0; level < setup.levels; ++level) texels += std::size_t(setup.mapSize >> level) * std::size_t(setup.mapSize >> level);
         const int bands = setup.xyz ? 0 : int(setup.indices.size());
-        const gl::Buffer map = makeZeroed(texels * std::size_t(setup.xyz ? 3 : bands), "map");
+        const gl::Buffer map = makeZeroed(texels * std::size_t(setup.xyz ? layout::kMapWords : bands), "map");
         render::PhotonTrace(shaders_).run({.front = front, .back = back, .receivers = receivers, .outerReceivers = outerReceivers,
                                            .emission = setup.emission, .backView = setup.back, .mapView = setup.map,
                                            .outerView = setup.outer, .list = list, .light = light, .wavelengths = wavelengths,

@@ -6,7 +6,7 @@ MapResolve::MapResolve(gl::ShaderLibrary& shaders)
     : shaders_(shaders), linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "map resolve")) {}
 
 void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger) {
-    texels_.view(in.map, GL_RGB32UI);
+    texels_.view(in.map, GL_RGBA32UI);
     glBindTextureUnit(1, texels_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, ledger.get());
     glBindSampler(0, linear_.get());

@@ -13,7 +13,7 @@ namespace caustream::render {
 class MapResolve {
    public:
     struct Inputs {
-        const gl::Buffer& map;            // photon_trace, XYZ
+        const gl::Buffer& map;            // photon_trace, kMapWords a texel
         const View& view;
         const gl::Texture& receivers;     // receiver_depth of that view, `size` texels a side
         int size;                         // texels a side of the finest level
@@ -30,7 +30,7 @@ class MapResolve {
    private:
     gl::ShaderLibrary& shaders_;
     gl::Sampler linear_;
-    gl::BufferTexture texels_;                              // the map as RGB32UI
+    gl::BufferTexture texels_;                              // the map as RGBA32UI
     std::array<gl::Texture, layout::kMostLevels> coarse_;   // RGBA32F XYZ, by level; the finest goes to the caller
 };
 

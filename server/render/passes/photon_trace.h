@@ -35,7 +35,7 @@ class PhotonTrace {
         float exitToleranceM = 1e-3f, reachM = 100.0f;
     };
     struct Outputs {
-        const gl::Buffer& map;        // u32, texel-major: levels of the inner map, then the outer's; 3 (XYZ) or `bands` each
+        const gl::Buffer& map;        // u32, texel-major: levels of the inner map, then the outer's; kMapWords or `bands` each
         const gl::Buffer& ledger;     // kLedgerBanks x kLedgerRows u32
     };
 
