@@ -1,5 +1,6 @@
 // What the renderer is asked for and what it gives back. Values only; no GL types.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <memory>
@@ -46,6 +47,7 @@ struct Request {
     bool wavelengthBands = false;           // Spectral: one band per wavelength instead of RGB
     int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side
     bool still = false;                     // 4x anti-aliasing, ledger always counted
+    bool countResiduals = false;            // traces anew and fills FrameStats::residuals
 };
 
 struct PlanEntry {
@@ -72,11 +74,21 @@ struct ErrorEstimate {
     double total = 0.0;
 };
 
+// How many searches ended how near to what they looked for, by what their last step still changed over what may remain:
+// below 1e-6, six decades up to 1 (settled so far), 1 to 10, more.
+struct Residuals {
+    using Histogram = std::array<std::uint32_t, 9>;
+    Histogram exit{};                       // exit points searched from nothing
+    Histogram exitFollowed{};               // exit points one step from a neighbour's
+    Histogram receiver{};                   // meetings with a receiver
+};
+
 struct FrameStats {
     std::vector<StageTime> stages;
     std::vector<PlanEntry> plan;
     EnergyLedger ledger;
     std::optional<ErrorEstimate> error;     // nothing: no map, or one whose transport cannot tell
+    std::optional<Residuals> residuals;     // when asked for and photons were traced
     std::string choice;                     // what budgetMs or targetError chose, and why; empty: not asked
     std::uint32_t photons = 0;              // traced for the map that this frame shows, times no wavelengths
     double renderMs = 0.0;

@@ -159,7 +159,8 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
                           .levels = levelsOf(in.transport),
                           .backSteps = in.transport.backSteps, .receiverSteps = in.transport.receiverSteps,
                           .exitToleranceM = 0.1f * radius,
-                          .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius)},
+                          .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius),
+                          .residuals = in.countResiduals ? &residuals_ : nullptr},
                          {map_, ledger_});
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back
@@ -227,6 +228,7 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
     out.bands.clear();
     out.warnings.clear();
     out.ledger = {};
+    out.residuals.reset();
     out.photons = 0;
     out.mapHash = 0;
     totalFlux_ = 0.0;
@@ -246,6 +248,11 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
 
     ledger_.ensure(layout::kLedgerBanks * layout::kLedgerRows * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "energy ledger");
     glClearNamedBufferData(ledger_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    if (in.countResiduals) {
+        residuals_.ensure(layout::kResidualHistograms * layout::kResidualBins * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "residuals");
+        glClearNamedBufferData(residuals_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+        out.residuals.emplace();
+    }
     timer.stage("receiver_depth", [&] {
         receiverDepth_.run({in.gpu, in.scene.materials, out.mapView, in.transport.mapSize}, receivers_);
         receiverDepth_.run({in.gpu, in.scene.materials, out.outerView, kOuterMapSize}, outerReceivers_);
@@ -273,6 +280,14 @@ void LightSide::collect(LightMaps& out) const {
     out.ledger.leftMap = rows[layout::kLedgerLeftMap] * flux;
     out.ledger.noReceiver = rows[layout::kLedgerNoReceiver] * flux;
     if (out.bands.empty()) out.ledger.deposited = rows[layout::kLedgerDeposited] * flux;
+    if (!out.residuals) return;
+    const std::vector<GLuint> counts = readWords(residuals_, layout::kResidualHistograms * layout::kResidualBins);
+    const auto histogram = [&](int which, Residuals::Histogram& to) {
+        std::copy_n(counts.begin() + which * layout::kResidualBins, layout::kResidualBins, to.begin());
+    };
+    histogram(layout::kResidualExit, out.residuals->exit);
+    histogram(layout::kResidualExitFollowed, out.residuals->exitFollowed);
+    histogram(layout::kResidualReceiver, out.residuals->receiver);
 }
 
 }  // namespace caustream::render

@@ -2,6 +2,7 @@
 // light and the transport options only, so that it is kept while the camera moves.
 #pragma once
 #include <glm/mat3x3.hpp>
+#include <optional>
 #include <vector>
 
 #include "gl/names.h"
@@ -29,6 +30,7 @@ struct LightMaps {
     glm::vec3 landing{0.0f};               // where the caustic lies: the mean of its flux
     optics::WavelengthSet wavelengths;
     EnergyLedger ledger;
+    std::optional<Residuals> residuals;    // when asked for
     std::uint32_t photons = 0;
     std::uint64_t mapHash = 0;             // FNV-1a of the fixed-point map; 0 unless asked for
     std::vector<float> bands;              // [texel][wavelength] concentration, when bands were asked for
@@ -45,6 +47,7 @@ class LightSide {
         const Transport& transport;        // photonGrid resolved, > 0
         const RenderPlan& plan;
         bool bands = false, hash = false;
+        bool countResiduals = false;
     };
 
     explicit LightSide(gl::ShaderLibrary& shaders)
@@ -73,7 +76,7 @@ class LightSide {
     PhotonTrace photonTrace_;
     MapResolve mapResolve_;
     gl::Texture front_, back_, receivers_, outerReceivers_;
-    gl::Buffer list_, map_, ledger_;
+    gl::Buffer list_, map_, ledger_, residuals_;
     int batches_ = 1;                      // of wavelengths, in each of which every photon is listed
     double totalFlux_ = 0.0;               // of the last run's emission views, an upper bound of all sums
 };

@@ -175,7 +175,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     auto found = std::find_if(lights.begin(), lights.end(), [&](const LightEntry& e) { return e.key == wanted; });
     // The light's own images are not kept: looking at them means making them. So does a hash that was not taken.
     const bool shown = request.target == Target::Pass && (request.pass == "caster_layers" || request.pass == "receiver_depth");
-    facts.lightCached = found != lights.end() && !shown && !(request.still && found->maps.hasMap && found->maps.mapHash == 0);
+    facts.lightCached = found != lights.end() && !shown && !request.countResiduals && !(request.still && found->maps.hasMap && found->maps.mapHash == 0);
     plan = makePlan(facts, request);
     if (facts.lightCached) {
         lights.splice(lights.begin(), lights, found);
@@ -190,7 +190,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     }
     lights.front().key.clear();   // not valid until it is done
     LightMaps& maps = lights.front().maps;
-    lightSide.run({*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still}, timer, maps);
+    lightSide.run({*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals}, timer, maps);
     if (maps.hasMap && plan.runs("gap_fill")) timer.stage("gap_fill", [&] { gapFill.run(maps.map); });
     lightSide.collect(maps);
     lights.front().key = wanted;
@@ -269,7 +269,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     impl_->shaders.program("photon_list", {{"COOKIE", 0}});
     for (const int bands : {0, 1}) {
         for (const int retry : {0, 1}) {
-            impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", 0}, {"RETRY", retry}});
+            impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", 0}, {"RESIDUALS", 0}, {"RETRY", retry}});
         }
     }
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
@@ -350,6 +350,7 @@ Frame Pipeline::run(const Request& request) {
     for (const auto& row : impl.timer.rows()) frame.stats.stages.push_back({row.name, row.ms});
     frame.stats.plan = std::move(plan.entries);
     frame.stats.ledger = maps.ledger;
+    if (request.countResiduals) frame.stats.residuals = maps.residuals;
     frame.stats.photons = maps.photons;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
     frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

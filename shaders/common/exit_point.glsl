@@ -26,5 +26,8 @@ bool findExit(View view, sampler2D back, vec3 origin, vec3 direction, int steps,
         last = t;
         t = max(met, 0.0);
     }
+#if RESIDUALS
+    countResidual(steps > 1 ? kResidualExit : kResidualExitFollowed, change / tolerance);
+#endif
     return change <= tolerance;
 }

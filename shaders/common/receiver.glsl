@@ -97,5 +97,8 @@ int findReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, float 
             side = -1;
         }
     }
+#if RESIDUALS
+    countResidual(kResidualReceiver, abs(f) / kResidual);
+#endif
     return abs(f) <= kResidual ? kHit : kRejected;
 }

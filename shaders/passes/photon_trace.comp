@@ -8,6 +8,7 @@
 #include "common/emission.glsl"
 #include "common/optics.glsl"
 #include "common/layer.glsl"
+#include "common/residuals.glsl"
 #include "common/exit_point.glsl"
 #include "common/receiver.glsl"
 

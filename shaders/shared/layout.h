@@ -22,6 +22,7 @@ LAYOUT_CONST kBindList = 0;
 LAYOUT_CONST kBindMap = 1;
 LAYOUT_CONST kBindLedger = 2;
 LAYOUT_CONST kBindRetry = 3;
+LAYOUT_CONST kBindResiduals = 4;
 
 // Rows of the energy ledger, fixed point in the map's unit, luminance-weighted. Each exists kLedgerBanks times, a cache
 // line apart, so that two processors do not wait for each other; the banks are summed on the CPU.
@@ -36,6 +37,13 @@ LAYOUT_CONST kLedgerDeposited = 7;
 LAYOUT_CONST kLedgerPhotons = 8;       // a count, not flux
 LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
 LAYOUT_CONST kLedgerBanks = 32;
+
+// Histograms of residuals over tolerance (common/residuals.glsl): below 1e-6, six decades up to 1, 1 to 10, above.
+LAYOUT_CONST kResidualExit = 0;            // exit point, searched from nothing
+LAYOUT_CONST kResidualExitFollowed = 1;    // exit point, one step from a neighbour's
+LAYOUT_CONST kResidualReceiver = 2;        // meeting with a receiver
+LAYOUT_CONST kResidualHistograms = 3;
+LAYOUT_CONST kResidualBins = 9;
 
 #ifdef __cplusplus
 }

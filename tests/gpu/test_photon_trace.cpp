@@ -28,11 +28,13 @@ class PhotonTraceTest : public CameraPass {
         std::vector<double> indices = {1.5};      // of the glass, a band each
         double absorptionPerM = 0.0;
         bool xyz = false;                         // sums (1, 1, 1) of each index instead of bands
+        bool countResiduals = false;
     };
     struct Result {
         std::vector<GLuint> map;                  // [texel][band]
         std::array<GLuint, layout::kLedgerRows> ledger;
         std::vector<glm::vec4> concentration;     // xyz: of the inner map
+        std::vector<GLuint> residuals;            // [histogram][bin]
     };
 
     Result trace(const SyntheticScene& scene, const Setup& setup) {
@@ -59,15 +61,16 @@ class PhotonTraceTest : public CameraPass {
         std::size_t texels = kSize * kSize;
         for (int level = 0; level < setup.levels; ++level) texels += std::size_t(setup.mapSize >> level) * std::size_t(setup.mapSize >> level);
         const int bands = setup.xyz ? 0 : int(setup.indices.size());
+        const gl::Buffer residuals = makeZeroed(layout::kResidualHistograms * layout::kResidualBins, "residuals");
         const gl::Buffer map = makeZeroed(texels * std::size_t(setup.xyz ? layout::kMapWords : bands), "map");
         render::PhotonTrace(shaders_).run({.front = front, .back = back, .receivers = receivers, .outerReceivers = outerReceivers,
                                            .emission = setup.emission, .backView = setup.back, .mapView = setup.map,
                                            .outerView = setup.outer, .list = list, .light = light, .wavelengths = wavelengths,
                                            .bands = bands, .fixedPerFlux = kFixedPerFlux, .ledgerPerFlux = kLedgerPerFlux,
-                                           .levels = setup.levels},
+                                           .levels = setup.levels, .residuals = setup.countResiduals ? &residuals : nullptr},
                                           {map, ledger});
         glMemoryBarrier(GL_ALL_BARRIER_BITS);   // map -> resolve, read-back
-        Result result{readWords(map), {}, {}};
+        Result result{readWords(map), {}, {}, readWords(residuals)};
         if (setup.xyz) {
             gl::Texture concentration;
             render::MapResolve(shaders_).run({.map = map, .view = setup.map, .receivers = receivers, .size = setup.mapSize, .levels = setup.levels,
@@ -132,6 +135,29 @@ TEST_F(PhotonTraceTest, SlabShiftsTheBeamSideways) {
             EXPECT_NEAR(found.flux, 0.2 * 0.2 * kept * kept, 2e-5 * 0.04) << angleDeg << " deg";
         }
     }
+}
+
+TEST_F(PhotonTraceTest, ResidualsAreCountedForEachSearchAndVanishOnFlatFaces) {
+    const SyntheticScene scene = boxAndFloor({1.2, 1.2, 0.2}, 20.0f);
+    Setup setup;
+    setup.indices = {1.52, 1.51, 1.5};
+    const Result unexamined = trace(scene, setup);
+    EXPECT_EQ(std::accumulate(unexamined.residuals.begin(), unexamined.residuals.end(), 0u), 0u);
+    setup.countResiduals = true;
+    const Result result = trace(scene, setup);
+    EXPECT_EQ(result.map, unexamined.map);
+    const auto total = [&](int histogram, int bins) {
+        const auto first = result.residuals.begin() + histogram * layout::kResidualBins;
+        return std::accumulate(first, first + bins, 0u);
+    };
+    // Each photon searches its exit and its receiver once, at the longest wavelength, and follows them at the others. A
+    // step on a plane is exact: what it leaves is rounding, below a hundredth of the tolerance (1e-5 m).
+    const GLuint photons = result.ledger[layout::kLedgerPhotons];
+    EXPECT_EQ(total(layout::kResidualExit, layout::kResidualBins), photons);
+    EXPECT_EQ(total(layout::kResidualExit, 5), photons);
+    EXPECT_EQ(total(layout::kResidualReceiver, layout::kResidualBins), photons);
+    EXPECT_EQ(total(layout::kResidualReceiver, 5), photons);
+    EXPECT_EQ(total(layout::kResidualExitFollowed, layout::kResidualBins), 2 * photons);
 }
 
 TEST_F(PhotonTraceTest, PrismTurnsTheBeamByItsDeviation) {

@@ -9,7 +9,7 @@ namespace caustream::render {
 
 void PhotonTrace::dispatch(const Inputs& in, int retry, const gl::Buffer& groups) {
     const GLuint program = shaders_.program(
-        "photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}, {"RETRY", retry}});
+        "photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}, {"RESIDUALS", in.residuals ? 1 : 0}, {"RETRY", retry}});
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_emission", in.emission);
@@ -59,6 +59,7 @@ void PhotonTrace::run(const Inputs& in, const Outputs& out) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindMap, out.map.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, out.ledger.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindRetry, retry_.get());
+    if (in.residuals) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindResiduals, in.residuals->get());
     dispatch(in, 0, in.list);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);   // retry list -> its dispatch
     dispatch(in, 1, retry_);

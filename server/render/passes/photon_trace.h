@@ -33,6 +33,7 @@ class PhotonTrace {
         int levels = 1;                                      // of the inner map's pyramid
         int backSteps = 4, receiverSteps = 6;
         float exitToleranceM = 1e-3f, reachM = 100.0f;
+        const gl::Buffer* residuals = nullptr;               // kResidualHistograms x kResidualBins u32, to be counted up
     };
     struct Outputs {
         const gl::Buffer& map;        // u32, texel-major: levels of the inner map, then the outer's; kMapWords or `bands` each
