@@ -20,8 +20,9 @@ namespace {
 constexpr int kHalves = 2;                    // fixed, whatever the threads: that keeps the bits
 constexpr std::uint64_t kReportEvery = 4096;  // photons
 
-// Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences: powers of 1/g for x^(d+1) = x + 1, here d = 3:
-// two for the direction, one for the wavelength. Fixed point of 64 bits, so that it does not coarsen as it goes on.
+// Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences: R2 for the direction and R1, the golden ratio,
+// for the wavelength. (R3 for all three has a worse projection on the directions: twice the error in every map.) Fixed
+// point of 64 bits, so that it does not coarsen as it goes on.
 class Sequence {
  public:
     explicit Sequence(int half) {
@@ -42,7 +43,7 @@ class Sequence {
     static std::uint64_t fixed(double x) { return static_cast<std::uint64_t>(std::ldexp(x, 64)); }
 
     std::array<std::uint64_t, 3> state_{};
-    std::array<std::uint64_t, 3> step_{fixed(0.8191725133961645), fixed(0.6710436067037893), fixed(0.5497004779019703)};
+    std::array<std::uint64_t, 3> step_{fixed(0.7548776662466927), fixed(0.5698402909980532), fixed(0.6180339887498949)};
 };
 
 void check(const Settings& settings) {
