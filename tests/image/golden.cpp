@@ -1,7 +1,6 @@
 #include "tests/image/golden.h"
 
 #include <png.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/reference/npy.h"
+#include "bench/reference/npy.h"
 
 namespace caustream::image {
 
@@ -32,18 +31,7 @@ std::string pathOf(const std::string& folder, const std::string& name) { return 
 }  // namespace
 
 void writeGolden(const std::string& folder, const std::string& name, const std::vector<float>& rgb, int width, int height) {
-    const std::string path = pathOf(folder, name);
-    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(height) + ", " +
-                         std::to_string(width) + ", 3), }";
-    header.resize((header.size() + 11 + 63) / 64 * 64 - 11, ' ');   // the data begins at a multiple of 64
-    header += '\n';
-    const gzFile file = gzopen(path.c_str(), "wb9");
-    if (!file) throw std::runtime_error("cannot write " + path);
-    const char prefix[10] = {'\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0, static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
-    gzwrite(file, prefix, sizeof prefix);
-    gzwrite(file, header.data(), static_cast<unsigned>(header.size()));
-    gzwrite(file, rgb.data(), static_cast<unsigned>(rgb.size() * sizeof(float)));
-    if (gzclose(file) != Z_OK) throw std::runtime_error("cannot write " + path);
+    npy::write(pathOf(folder, name), {static_cast<std::size_t>(height), static_cast<std::size_t>(width), 3}, rgb);
 }
 
 std::string compareWithGolden(const std::string& folder, const std::string& name, const std::vector<float>& rgb, int width,
@@ -51,7 +39,7 @@ std::string compareWithGolden(const std::string& folder, const std::string& name
     for (const float value : rgb) {
         if (!std::isfinite(value)) return name + " holds a value that is not finite";
     }
-    const reference::Array golden = reference::readNpyGz(pathOf(folder, name));
+    const npy::Array golden = npy::read(pathOf(folder, name));
     if (golden.values.size() != rgb.size()) return name + " has another size than its golden";
 
     std::vector<double> differences;

@@ -48,10 +48,10 @@ Reference load(const std::string& name) {
         reference.nm.push_back(band.at("nm"));
         reference.windowFlux.push_back(band.at("flux_window_W"));
     }
-    reference.mono7 = readNpyGz(kFolder + "/" + name + "_mono7.npy.gz");
-    reference.direct = readNpyGz(kFolder + "/" + name + "_direct.npy.gz");
+    reference.mono7 = npy::read(kFolder + "/" + name + "_mono7.npy.gz");
+    reference.direct = npy::read(kFolder + "/" + name + "_direct.npy.gz");
     const std::string xyz = kFolder + "/" + name + "_xyz.npy.gz";
-    if (std::filesystem::exists(xyz)) reference.xyz = readNpyGz(xyz);
+    if (std::filesystem::exists(xyz)) reference.xyz = npy::read(xyz);
     return reference;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/reference/npy.h"
+#include "bench/reference/npy.h"
 
 namespace caustream::reference {
 
@@ -23,9 +23,9 @@ struct Reference {
     double halfAngleDeg = 0;         // hard edge, 1 cd inside
     std::vector<double> nm;          // of the bands of mono7
     std::vector<double> windowFlux;  // of each band, as the tracer summed it
-    Array mono7;                     // [nm][j][i] irradiance of the caustic alone for 1 W/sr; no direct light
-    std::optional<Array> xyz;  // [3][j][i] CIE XYZ of a flat spectrum, continuous in wavelength; the prism alone has it
-    Array direct;  // [j][i] direct irradiance cos / r^2, 0 in the caster's shadow and outside the cone
+    npy::Array mono7;   // [nm][j][i] irradiance of the caustic alone for 1 W/sr; no direct light
+    npy::Array direct;  // [j][i] direct irradiance cos / r^2, 0 in the caster's shadow and outside the cone
+    std::optional<npy::Array> xyz;  // [3][j][i] CIE XYZ of a flat spectrum, continuous; the prism alone has it
 };
 
 // Throws std::runtime_error when a file is missing or damaged.

@@ -1,15 +1,17 @@
-#include "tests/reference/npy.h"
+#include "bench/reference/npy.h"
 
 #include <zlib.h>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 
-namespace caustream::reference {
+namespace caustream::npy {
 
 namespace {
 
+// gzread() passes what is not gzipped as it is.
 std::string readGz(const std::string& path) {
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
     if (!file) throw std::runtime_error("cannot open " + path);
@@ -24,7 +26,7 @@ std::string readGz(const std::string& path) {
 }  // namespace
 
 // NumPy, format.py, version 1.0: magic, version, u16 header length, a Python dictionary as text, then the data.
-Array readNpyGz(const std::string& path) {
+Array read(const std::string& path) {
     const std::string bytes = readGz(path);
     constexpr std::size_t kPrefix = 10;
     if (bytes.size() < kPrefix || bytes.compare(0, 7, "\x93NUMPY\x01") != 0)
@@ -51,4 +53,22 @@ Array readNpyGz(const std::string& path) {
     return array;
 }
 
-}  // namespace caustream::reference
+void write(const std::string& path, const std::vector<std::size_t>& shape, const std::vector<float>& values) {
+    std::string tuple;
+    for (const std::size_t length : shape) tuple.append(std::to_string(length)).append(", ");
+    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + tuple + "), }";
+    // The data begin at a multiple of 64 bytes, after a line end.
+    constexpr std::size_t kPrefix = 10, kAlign = 64;
+    header.resize((kPrefix + header.size() + 1 + kAlign - 1) / kAlign * kAlign - kPrefix - 1, ' ');
+    header += '\n';
+    const bool pack = path.ends_with(".gz");
+    const gzFile file = gzopen(path.c_str(), pack ? "wb9" : "wbT");
+    if (!file) throw std::runtime_error("cannot write " + path);
+    const std::array<char, kPrefix> prefix{'\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0, static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
+    gzwrite(file, prefix.data(), static_cast<unsigned>(prefix.size()));
+    gzwrite(file, header.data(), static_cast<unsigned>(header.size()));
+    gzwrite(file, values.data(), static_cast<unsigned>(values.size() * sizeof(float)));
+    if (gzclose(file) != Z_OK) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace caustream::npy
