@@ -27,6 +27,7 @@ void addOutline(std::vector<glm::dvec3>& points, const Sphere& sphere, const Lig
     const double distance = glm::length(to);
     if (!directional && distance <= sphere.radius) return points.push_back(light.position);
     const double sine = directional ? 0.0 : sphere.radius / distance;
+    if (directional) points.push_back(sphere.centre - sphere.radius * to);   // the rays begin before it
     const glm::dmat3 frame = frameAlong(to / distance, glm::dvec3(0, 1, 0));
     const double across = sphere.radius * std::sqrt(1.0 - sine * sine) / std::cos(kPi / kCorners);
     for (int i = 0; i < kCorners; ++i) {
