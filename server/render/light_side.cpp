@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/error_estimate.h"
 #include "render/light_views.h"
 #include "shaders/shared/layout.h"
 
@@ -13,6 +14,7 @@ namespace {
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
 constexpr int kShadowSize = 1024;
 constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels
+constexpr double kRoughnessUnit = 16.0;       // of its row in the ledger: map_resolve.comp
 constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
 
 std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words) {
@@ -178,14 +180,14 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
     for (const Emitter& emitter : emitters) traceCaster(in, emitter, 0, out.wavelengths.nm.size(), fixedPerFlux, timer, out);
 
     timer.stage("map_resolve", [&] {
-        const auto resolve = [&](const View& view, const gl::Texture& receivers, int side, int sideLevels, std::size_t first, gl::Texture& concentration) {
+        const auto resolve = [&](const View& view, const gl::Texture& receivers, int side, int sideLevels, std::size_t first, bool judged, gl::Texture& concentration) {
             mapResolve_.run({.map = map_, .view = view, .receivers = receivers, .size = side, .levels = sideLevels, .firstTexel = static_cast<int>(first),
                              .xyzToRgb = glm::mat3(out.wavelengths.xyzToRgb), .fluxPerFixed = 1.0 / fixedPerFlux,
-                             .ledgerPerFixed = kFixedRange / totalFlux_ / fixedPerFlux},
+                             .ledgerPerFixed = kFixedRange / totalFlux_ / fixedPerFlux, .judged = judged},
                             concentration, ledger_);
         };
-        resolve(out.mapView, receivers_, size, levels, 0, out.map);
-        resolve(out.outerView, outerReceivers_, kOuterMapSize, 1, texels, out.outerMap);
+        resolve(out.mapView, receivers_, size, levels, 0, true, out.map);
+        resolve(out.outerView, outerReceivers_, kOuterMapSize, 1, texels, false, out.outerMap);
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                     GL_TEXTURE_UPDATE_BARRIER_BIT);   // map -> camera_receivers, gap_fill, read-back
@@ -230,6 +232,7 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
     out.ledger = {};
     out.residuals.reset();
     out.photons = 0;
+    out.error.reset();
     out.mapHash = 0;
     totalFlux_ = 0.0;
     batches_ = 1;
@@ -279,7 +282,14 @@ void LightSide::collect(LightMaps& out) const {
     out.ledger.rejected = rows[layout::kLedgerRejected] * flux;
     out.ledger.leftMap = rows[layout::kLedgerLeftMap] * flux;
     out.ledger.noReceiver = rows[layout::kLedgerNoReceiver] * flux;
-    if (out.bands.empty()) out.ledger.deposited = rows[layout::kLedgerDeposited] * flux;
+    if (out.bands.empty()) {
+        const double deposited = rows[layout::kLedgerDeposited];
+        out.ledger.deposited = deposited * flux;
+        if (deposited > 0.0) {
+            out.error = estimateError({.halves = rows[layout::kLedgerHalves] / deposited,
+                                       .roughness = kRoughnessUnit * rows[layout::kLedgerRoughness] / deposited});
+        }
+    }
     if (!out.residuals) return;
     const std::vector<GLuint> counts = readWords(residuals_, layout::kResidualHistograms * layout::kResidualBins);
     const auto histogram = [&](int which, Residuals::Histogram& to) {

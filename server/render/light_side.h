@@ -31,6 +31,7 @@ struct LightMaps {
     optics::WavelengthSet wavelengths;
     EnergyLedger ledger;
     std::optional<Residuals> residuals;    // when asked for
+    std::optional<ErrorEstimate> error;
     std::uint32_t photons = 0;
     std::uint64_t mapHash = 0;             // FNV-1a of the fixed-point map; 0 unless asked for
     std::vector<float> bands;              // [texel][wavelength] concentration, when bands were asked for

@@ -273,7 +273,8 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
         }
     }
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
-    for (const int finest : {0, 1}) impl_->shaders.program("map_resolve", {{"FINEST", finest}});
+    for (const int judged : {0, 1}) impl_->shaders.program("map_resolve", {{"FINEST", 1}, {"JUDGED", judged}});
+    impl_->shaders.program("map_resolve", {{"FINEST", 0}, {"JUDGED", 1}});
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
     report(1);
     impl_->receivers.warmUp();
@@ -351,6 +352,7 @@ Frame Pipeline::run(const Request& request) {
     frame.stats.plan = std::move(plan.entries);
     frame.stats.ledger = maps.ledger;
     if (request.countResiduals) frame.stats.residuals = maps.residuals;
+    frame.stats.error = maps.error;
     frame.stats.photons = maps.photons;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
     frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

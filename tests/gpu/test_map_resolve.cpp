@@ -12,7 +12,7 @@ class MapResolveTest : public CameraPass {
    protected:
     struct Resolved {
         std::vector<glm::vec4> concentration;
-        GLuint booked;
+        std::array<GLuint, layout::kLedgerRows> ledger;
     };
     Resolved resolve(const std::vector<GLuint>& words, const View& view, int levels, double fluxPerFixed = 1.0) {
         const gl::Buffer map(words.size() * sizeof(GLuint), words.data(), GL_DYNAMIC_STORAGE_BIT, "map");
@@ -21,10 +21,10 @@ class MapResolveTest : public CameraPass {
         fillTexture(receivers, std::vector<glm::vec4>(kSize * kSize, glm::vec4(0.25f)));
         gl::Texture concentration;
         render::MapResolve(shaders_).run({.map = map, .view = view, .receivers = receivers, .size = kSize, .levels = levels, .firstTexel = 0,
-                                          .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = fluxPerFixed, .ledgerPerFixed = 1.0},
+                                          .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = fluxPerFixed, .ledgerPerFixed = 1.0, .judged = true},
                                          concentration, ledger);
         glMemoryBarrier(GL_ALL_BARRIER_BITS);   // map and ledger -> read-back
-        return {readTexture(concentration), ledgerRows(ledger)[layout::kLedgerDeposited]};
+        return {readTexture(concentration), ledgerRows(ledger)};
     }
 
     static std::size_t firstOf(int level) {
@@ -52,7 +52,7 @@ TEST_F(MapResolveTest, EveryLevelKeepsItsSumBordersIncluded) {
             for (const glm::vec4& c : resolved.concentration) sum += glm::dvec3(c);
             // The weights are quarters: nothing rounds below 2^22.
             EXPECT_EQ(sum, glm::dvec3(1u << 20, 1u << 21, 1u << 22)) << "level " << level << " texel " << texel.x << " " << texel.y;
-            EXPECT_NEAR(resolved.booked, 1u << 21, layout::kLedgerBanks);   // half a unit per group
+            EXPECT_NEAR(resolved.ledger[layout::kLedgerDeposited], 1u << 21, layout::kLedgerBanks);   // half a unit per group
         }
     }
 }
@@ -67,6 +67,32 @@ TEST_F(MapResolveTest, CoarseTexelSpreadsAroundItsPlace) {
     }
     EXPECT_NEAR(centroid.x, 9.5 * 4.0, 1e-9);
     EXPECT_NEAR(centroid.y, 5.5 * 4.0, 1e-9);
+}
+
+TEST_F(MapResolveTest, BooksWhatTheHalvesDifferByAndHowRoughTheCoarserLevelsAre) {
+    // Equal halves, even light: nothing
+    std::vector<GLuint> words = emptyMap(2);
+    for (std::size_t texel = 0; texel < firstOf(2); ++texel) {
+        words[layout::kMapWords * texel + layout::kMapEvenY] = words[layout::kMapWords * texel + layout::kMapEvenY + 1] = 1u << 16;
+    }
+    Resolved resolved = resolve(words, unitView(), 2);
+    EXPECT_EQ(resolved.ledger[layout::kLedgerHalves], 0u);
+    EXPECT_EQ(resolved.ledger[layout::kLedgerRoughness], 0u);
+
+    // A texel of the finest level that one half alone brought
+    words = emptyMap(2);
+    words[layout::kMapWords * (20 * kSize + 30) + layout::kMapEvenY + 1] = 1u << 24;
+    resolved = resolve(words, unitView(), 2);
+    EXPECT_EQ(resolved.ledger[layout::kLedgerHalves], 1u << 24);
+    EXPECT_EQ(resolved.ledger[layout::kLedgerRoughness], 0u);   // no wider than a texel: nothing is blurred
+
+    // A texel of the coarser one, from both: it misses all of its neighbours' mean, its four neighbours a quarter each
+    words = emptyMap(2);
+    const std::size_t at = layout::kMapWords * (firstOf(1) + 7 * (kSize / 2) + 9);
+    words[at + layout::kMapEvenY] = words[at + layout::kMapEvenY + 1] = 1u << 23;
+    resolved = resolve(words, unitView(), 2);
+    EXPECT_EQ(resolved.ledger[layout::kLedgerHalves], 0u);
+    EXPECT_EQ(resolved.ledger[layout::kLedgerRoughness], 2u * (1u << 24) / 16u);
 }
 
 TEST_F(MapResolveTest, DirectLightHasConcentrationOne) {

@@ -75,7 +75,7 @@ class PhotonTraceTest : public CameraPass {
             gl::Texture concentration;
             render::MapResolve(shaders_).run({.map = map, .view = setup.map, .receivers = receivers, .size = setup.mapSize, .levels = setup.levels,
                                               .firstTexel = 0, .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = 1.0 / kFixedPerFlux,
-                                              .ledgerPerFixed = kLedgerPerFlux / kFixedPerFlux},
+                                              .ledgerPerFixed = kLedgerPerFlux / kFixedPerFlux, .judged = false},
                                              concentration, ledger);
             glMemoryBarrier(GL_ALL_BARRIER_BITS);   // ledger -> read-back
             result.concentration = readTexture(concentration);

@@ -18,7 +18,7 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
         gl::Texture& out = level == 0 ? concentration : coarse_[static_cast<std::size_t>(level)];
         out.ensure(size, size, GL_RGBA32F, "spectral map");
 
-        const GLuint program = shaders_.program("map_resolve", {{"FINEST", level == 0 ? 1 : 0}});
+        const GLuint program = shaders_.program("map_resolve", {{"FINEST", level == 0 ? 1 : 0}, {"JUDGED", in.judged ? 1 : 0}});
         glUseProgram(program);
         const gl::Uniforms uniforms(program);
         setView(uniforms, "u_view", in.view);

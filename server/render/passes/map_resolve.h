@@ -21,6 +21,7 @@ class MapResolve {
         int firstTexel;                   // of the finest level in the buffer; the others follow
         glm::mat3 xyzToRgb;
         double fluxPerFixed, ledgerPerFixed;
+        bool judged;                      // book what estimateError() asks for
     };
 
     explicit MapResolve(gl::ShaderLibrary& shaders);
@@ -31,7 +32,7 @@ class MapResolve {
     gl::ShaderLibrary& shaders_;
     gl::Sampler linear_;
     gl::BufferTexture texels_;                              // the map as RGBA32UI
-    std::array<gl::Texture, layout::kMostLevels> coarse_;   // RGBA32F XYZ, by level; the finest goes to the caller
+    std::array<gl::Texture, layout::kMostLevels> coarse_;   // RGBA32F XYZ and even - odd Y, by level; the finest goes to the caller
 };
 
 }  // namespace caustream::render

@@ -1,0 +1,30 @@
+#include "render/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace caustream::render {
+
+namespace {
+
+// Two independent halves A and B, each scaled to all of the energy, average to a map whose error is |A - B| / 2: of the
+// halves as they are deposited, |even - odd| itself. Photons on a lattice are not independent, and the checkerboard's
+// halves share what a gap in the lattice costs: measured against 64 times the photons, 1.5 times as much.
+constexpr double kHalves = 1.5;
+
+// Both halves are spread over the same widths, so that their difference does not know what the spreading blurs. That is
+// what would change if it were spread a little more: of the four neighbours' mean, .45 is left with 64 times the photons.
+constexpr double kBlur = 0.45;
+
+constexpr double kMost = 2.0;
+
+}  // namespace
+
+ErrorEstimate estimateError(const MapDifferences& map) {
+    ErrorEstimate error;
+    error.sampling = std::min(std::hypot(kHalves * map.halves, kBlur * map.roughness), kMost);
+    error.total = std::min(std::hypot(error.sampling, error.spectral), kMost);
+    return error;
+}
+
+}  // namespace caustream::render
