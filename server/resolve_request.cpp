@@ -75,9 +75,6 @@ render::Transport transportOf(const protocol::TransportState& wanted) {
 tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
                                                          std::shared_ptr<const scene::Scene> scene) {
     const protocol::StreamState& stream = state.stream;
-    if (state.transport.mode == protocol::TransportMode::Thesis) {
-        return unsupported("this server has no thesis mode", "transport.mode");
-    }
     if (auto checked = checkStream(stream); !checked) {
         return tl::unexpected(std::move(checked.error()));
     }

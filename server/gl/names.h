@@ -38,6 +38,7 @@ inline void deleteSampler(GLuint n) { glDeleteSamplers(1, &n); }
 inline void deleteProgram(GLuint n) { glDeleteProgram(n); }
 inline void deleteShader(GLuint n) { glDeleteShader(n); }
 inline void deleteQuery(GLuint n) { glDeleteQueries(1, &n); }
+inline void deleteTransformFeedback(GLuint n) { glDeleteTransformFeedbacks(1, &n); }
 
 using Framebuffer = GlName<deleteFramebuffer>;
 using VertexArray = GlName<deleteVertexArray>;
@@ -45,6 +46,7 @@ using Sampler = GlName<deleteSampler>;
 using Program = GlName<deleteProgram>;
 using Shader = GlName<deleteShader>;
 using Query = GlName<deleteQuery>;
+using TransformFeedback = GlName<deleteTransformFeedback>;
 
 // 2D texture with immutable storage. Filtering and wrapping are the samplers' business, except that a fresh texture is
 // nearest and clamped, so that it is complete with one level.

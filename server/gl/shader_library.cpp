@@ -15,7 +15,10 @@ struct Stage {
     const char* ending;
     GLenum kind;
 };
-constexpr Stage kStages[] = {{".comp", GL_COMPUTE_SHADER}, {".vert", GL_VERTEX_SHADER}, {".frag", GL_FRAGMENT_SHADER}};
+constexpr Stage kStages[] = {{".comp", GL_COMPUTE_SHADER},
+                             {".vert", GL_VERTEX_SHADER},
+                             {".geom", GL_GEOMETRY_SHADER},
+                             {".frag", GL_FRAGMENT_SHADER}};
 
 // Drivers begin a message with the source's number: "2:14(5): error" (Mesa), "2(14) : error" (NVIDIA),
 // "ERROR: 2:14:" (others). The number becomes the file it stands for.

@@ -1,4 +1,4 @@
-// Programs by name: "photon_trace" is shaders/passes/photon_trace.comp, or .vert and .frag
+// Programs by name: "photon_trace" is shaders/passes/photon_trace.comp, or .vert, .geom and .frag
 // (common/fullscreen.vert where a .frag stands alone). Resolves #include
 // "common/x.glsl", once each; driver messages come back as file:line. Compiled once per set of flags.
 #pragma once

@@ -17,6 +17,7 @@ namespace {
 
 constexpr float kWidestTangent = 1.732f;   // 120 degrees across: beyond it texels say little
 constexpr float kNearShare = 0.01f;        // of the distance to what a view is for; nearer things are the lamp's own
+constexpr float kTurnedTangent = 1.2f;     // 100 degrees across: the published view is not turned beyond it
 constexpr double kLeftOutShare = 0.005;    // of the flux, given to the outer map
 
 struct Rect {
@@ -150,6 +151,25 @@ Rect landingRect(const View& view, std::span<const Landing> landings, double lef
     return {glm::vec2(rangeX.x, rangeY.x), glm::vec2(rangeX.y, rangeY.y)};
 }
 
+// The corners of one view of the light, in the image of another.
+void addCorners(const View& of, const View& view, Rect& rect) {
+    const glm::mat4 toWorld = glm::affineInverse(of.worldToView);
+    for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(-1, 1), glm::vec2(1, 1)}) {
+        glm::vec2 p;
+        if (project(view, view.toView(glm::vec3(toWorld * glm::vec4(corner * of.halfExtent, -1, 1))), p)) rect.add(p);
+    }
+}
+
+// Variance of the landings' depth over its mean's square.
+float depthSpread(const View& view, std::span<const Landing> landings) {
+    float flux = 0.0f, sum = 0.0f, squares = 0.0f;
+    for (const Landing& landing : landings) {
+        const float z = -view.toView(landing.position).z;
+        flux += landing.flux, sum += landing.flux * z, squares += landing.flux * z * z;
+    }
+    return flux * squares / std::max(sum * sum, 1e-30f) - 1.0f;
+}
+
 }  // namespace
 
 std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster) {
@@ -221,6 +241,41 @@ View shadowView(const scene::Scene& scene, const scene::Light& light) {
     view.halfExtent = glm::vec2(view.perspective ? 1.2f : 1.01f * scene.geometry->bounds.radius());
     if (!view.perspective) view.worldToView = frame(scene, light, scene.geometry->bounds.centre()).worldToView;
     return view;
+}
+
+View wholeView(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings,
+               std::span<const View> emissions) {
+    const View cone = shadowView(scene, light);
+    glm::vec3 mean(0.0f);
+    float all = 0.0f, held = 0.0f;
+    for (const Landing& landing : landings) {
+        glm::vec2 p;
+        all += landing.flux;
+        mean += landing.flux * landing.position;
+        const bool ahead = project(cone, cone.toView(landing.position), p);
+        if (ahead && std::max(std::abs(p.x), std::abs(p.y)) <= cone.halfExtent.x) held += landing.flux;
+    }
+    if (held >= 0.9f * all) return cone;
+
+    // Away from the casters, from the caustic's middle on, to where its depth changes least.
+    const glm::vec3 along = mean / all - light.position;
+    const glm::vec3 turn = glm::cross(light.direction, along);
+    const int turns = cone.perspective && glm::dot(turn, turn) > 0.0f ? 12 : 0;
+    View best = cone;
+    float leastSpread = std::numeric_limits<float>::max();
+    for (int i = 0; i <= turns; ++i) {
+        const glm::mat3 turned(i > 0 ? glm::rotate(glm::mat4(1.0f), glm::radians(5.0f * static_cast<float>(i)), turn) : glm::mat4(1.0f));
+        View view = frame(scene, light, cone.perspective ? light.position + turned * along : mean / all);
+        Rect rect = landingRect(view, landings, kLeftOutShare);
+        for (const View& emission : emissions) addCorners(emission, view, rect);
+        const glm::vec2 half = 1.05f * halfExtentAround(rect);
+        const float reach = std::max(half.x, half.y);
+        if (i > 0 && reach > kTurnedTangent) break;
+        view.halfExtent = glm::vec2(std::min(reach, view.perspective ? kWidestTangent : 3.0f * scene.geometry->bounds.radius()));
+        view.nearM = std::min(view.nearM, cone.nearM);
+        if (const float spread = depthSpread(view, landings); spread < leastSpread) leastSpread = spread, best = view;
+    }
+    return best;
 }
 
 }  // namespace caustream::render

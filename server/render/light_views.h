@@ -28,4 +28,10 @@ std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& 
 // The light's cone (at most 120 degrees across), or the frustum towards the casters for a point light.
 View shadowView(const scene::Scene& scene, const scene::Light& light);
 
+// The published algorithm's one view for everything: the cone. For a light whose cone does not hold its own caustic (less
+// than nine tenths of it) a view that holds the caustic and the `emissions`, aimed as the thesis's scenes are lit: facing
+// the receiver, where its five steps to the receiver settle.
+View wholeView(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings,
+               std::span<const View> emissions);
+
 }  // namespace caustream::render

@@ -19,6 +19,8 @@
 #include "render/passes/gap_fill.h"
 #include "render/passes/present.h"
 #include "render/read_back.h"
+#include "render/thesis_light_side.h"
+#include "render/thesis_plan.h"
 #include "scene/builtin_scenes.h"
 
 namespace caustream::render {
@@ -70,7 +72,7 @@ std::string lightKey(const Request& request, const scene::Light& light, int phot
     for (double nm = optics::kBandMinNm; nm <= optics::kBandMaxNm; nm += 10.0) key.add(optics::relativePower(light.spectrum, nm));
     if (const auto* lines = std::get_if<optics::Lines>(&light.spectrum)) key.addAll(lines->nm);
     const Transport& t = request.transport;
-    key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.mapSize), key.add(t.backSteps);
+    key.add(t.mode), key.add(t.hierarchyLevels), key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.mapSize), key.add(t.backSteps);
     key.add(t.receiverSteps), key.add(t.gapFill), key.add(t.filter), key.add(t.forceDispersive), key.add(request.wavelengthBands);
     return key.bytes();
 }
@@ -106,6 +108,7 @@ struct Pipeline::Impl {
     gl::ShaderLibrary& shaders;
     gl::StageTimer timer;
     LightSide lightSide;
+    ThesisLightSide thesisSide;
     GapFill gapFill;
     CameraReceivers receivers;
     CameraCasters casters;
@@ -117,7 +120,7 @@ struct Pipeline::Impl {
     gl::Texture color, depth, front, back, output;
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
-        : context(c), shaders(s), timer(c.software()), lightSide(s), gapFill(s), receivers(s), casters(s), refraction(s), present(s) {
+        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), receivers(s), casters(s), refraction(s), present(s) {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
     }
 
@@ -190,9 +193,13 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     }
     lights.front().key.clear();   // not valid until it is done
     LightMaps& maps = lights.front().maps;
-    lightSide.run({*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals}, timer, maps);
+    const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals};
+    const bool thesis = transport.mode == Mode::Thesis;
+    if (thesis) thesisSide.run(in, timer, maps);
+    else lightSide.run(in, timer, maps);
     if (maps.hasMap && plan.runs("gap_fill")) timer.stage("gap_fill", [&] { gapFill.run(maps.map); });
-    lightSide.collect(maps);
+    if (thesis) thesisSide.collect(maps);
+    else lightSide.collect(maps);
     lights.front().key = wanted;
     return maps;
 }
@@ -247,8 +254,11 @@ void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scal
     Present::Inputs in{.image = color.get(), .mode = Present::Mode::Picture, .scale = scale, .downsample = request.still};
     if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = mapOf(maps, request.transport.mapSize).get(), .mode = Present::Mode::Map};
     if (request.target == Target::Pass) {
-        if (request.pass == "caster_layers") in = {.image = lightSide.frontLayer().get(), .mode = Present::Mode::Normals};
-        if (request.pass == "receiver_depth") in = {.image = lightSide.receivers().get(), .mode = Present::Mode::Layer, .depthImage = true};
+        const bool thesis = request.transport.mode == Mode::Thesis;
+        const gl::Texture& frontLayer = thesis ? thesisSide.frontLayer() : lightSide.frontLayer();
+        const gl::Texture& receiverDepths = thesis ? thesisSide.receivers() : lightSide.receivers();
+        if (request.pass == "caster_layers") in = {.image = frontLayer.get(), .mode = Present::Mode::Normals};
+        if (request.pass == "receiver_depth") in = {.image = receiverDepths.get(), .mode = Present::Mode::Layer, .depthImage = true};
         if (request.pass == "shadow") in = {.image = maps.shadow.get(), .mode = Present::Mode::Layer, .depthImage = true};
         if (request.pass == "outer_map") in = {.image = maps.outerMap.get(), .mode = Present::Mode::Map};
         if (request.pass == "camera_casters") in = {.image = front.get(), .mode = Present::Mode::Normals};
@@ -306,7 +316,9 @@ Frame Pipeline::run(const Request& request) {
     const scene::Scene& scene = *request.scene;
     SceneEntry& entry = impl.sceneEntry(scene);
     Transport transport = request.transport;
-    if (transport.photonGrid == 0) transport.photonGrid = impl.context.software() ? 256 : 1024;
+    if (transport.photonGrid == 0) {
+        transport.photonGrid = transport.mode == Mode::Thesis ? kThesisGrid : impl.context.software() ? 256 : 1024;
+    }
 
     // Light's side, from the cache where nothing changed
     const View view = cameraView(request.camera, scene, request.width, request.height);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/thesis_plan.h"
+
 namespace caustream::render {
 
 bool RenderPlan::runs(const std::string& pass) const {
@@ -10,6 +12,7 @@ bool RenderPlan::runs(const std::string& pass) const {
 }
 
 RenderPlan makePlan(const PlanFacts& facts, const Request& request) {
+    if (request.transport.mode == Mode::Thesis) return makeThesisPlan(facts, request);
     RenderPlan plan;
     const Transport& transport = request.transport;
     const int asked = !transport.wavelengthsNm.empty() ? static_cast<int>(transport.wavelengthsNm.size())

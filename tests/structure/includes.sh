@@ -25,7 +25,7 @@ shaders/shared    |
 '
 
 found="$(find protocol server client scenes shaders -type f \
-    \( -name '*.h' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.vert' -o -name '*.frag' -o -name '*.comp' \) -print0 |
+    \( -name '*.h' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.vert' -o -name '*.geom' -o -name '*.frag' -o -name '*.comp' \) -print0 |
     xargs -0 grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' | LC_ALL=C sort)"
 [[ -n "$found" ]] || {
     echo "includes: no include found below $PWD; is this the repository?" >&2

@@ -3,7 +3,7 @@
 namespace caustream::render {
 
 void CasterLayers::run(const Inputs& in, Side side, gl::Texture& layer) {
-    layer.ensure(in.width, in.height, GL_RGBA32F, side == Side::Front ? "front layer" : "back layer");
+    layer.ensure(in.width, in.height, GL_RGBA32F, side == Side::Front ? "front layer" : "back layer", in.levels);
     depth_.ensure(in.width, in.height, GL_DEPTH_COMPONENT32F, "caster layers depth");
     const gl::Framebuffer target = gl::makeFramebuffer("caster_layers", {layer.get()}, depth_.get());
 

@@ -20,6 +20,7 @@ class CasterLayers {
         int width, height;
         // Draws what may stand before the caster (depth only); a caster's texel behind it stays empty. Null: nothing.
         std::function<void()> drawOccluders;
+        int levels = 1;           // of `layer`'s storage; only the first is drawn
     };
 
     explicit CasterLayers(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
