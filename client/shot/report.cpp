@@ -121,11 +121,18 @@ Json Report::json(const std::string& file, const Frame& last, const Session& ses
     return json;
 }
 
-std::string Report::line(const std::string& file, const Frame& last) const {
+std::string Report::line(const std::string& file, const Frame& last, const Session& session) const {
     char text[256];
     std::snprintf(text, sizeof text, ": %dx%d, %d bands, rendered in %.1f ms", last.image.width, last.image.height,
                   last.image.bands, last.header.renderUs / 1000.0);
-    return file + text;
+    std::string line = file + text;
+    const auto& stats = session.stats();
+    if (stats && stats->error) {
+        std::snprintf(text, sizeof text, ", map error about %.1f%%", 100.0 * stats->error->total);
+        line += text;
+    }
+    if (stats && !stats->choice.empty()) line += "; " + stats->choice;
+    return line;
 }
 
 }  // namespace caustream::shot

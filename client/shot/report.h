@@ -14,7 +14,7 @@ class Report {
     void add(const connection::Frame& frame, std::uint64_t tookUs);  // from asking to decoded
 
     protocol::Json json(const std::string& file, const connection::Frame& last, const Session& session) const;
-    std::string line(const std::string& file, const connection::Frame& last) const;
+    std::string line(const std::string& file, const connection::Frame& last, const Session& session) const;
 
  private:
     const Options& options_;

@@ -152,7 +152,7 @@ tl::expected<std::string, std::string> shoot(const Options& options) {
             const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
             if (auto written = connection::writeBytes(file + ".json", bytes); !written)
                 return tl::make_unexpected(written.error());
-            return report.line(file, *frame);
+            return report.line(file, *frame, session);
         }
     }
     return file;

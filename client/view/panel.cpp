@@ -208,6 +208,11 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
     else if (model.connected)
         ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
 
+    if (model.connected && model.stats && model.stats->error)
+        ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", model.renderMs, 100.0 * model.stats->error->total);
+    else if (model.connected)
+        ImGui::TextDisabled("frame %.1f ms", model.renderMs);
+
     drawScene(model, editor);
     if (section("Picture")) drawPicture(model, controls, editor);
     if (section("Light")) drawLight(model, controls, editor);

@@ -29,7 +29,8 @@ void drawRates(const Model& model) {
     row("frames per second", "%.1f", model.frameRate);
     row("input to display", "%.1f ms", model.latencyMs);
     row("round trip", "%.2f ms", model.roundTripMs);
-    row("server: render", "%.1f ms", model.renderMs);
+    row("server: frame time", "%.1f ms", model.renderMs);
+    if (model.stats && model.stats->error) row("map error, estimated", "%.1f %%", 100.0 * model.stats->error->total);
     row("server: encode", "%.1f ms", model.encodeMs);
     row("decode", "%.1f ms", model.decodeMs);
     row("frame size", "%.0f kB", model.payloadKb);
@@ -40,6 +41,11 @@ void drawRates(const Model& model) {
     }
     ImGui::EndTable();
     ImGui::TextDisabled("picture %d x %d", model.frameWidth, model.frameHeight);
+    if (model.stats && !model.stats->choice.empty()) {
+        ImGui::PushTextWrapPos(0.0f);
+        ImGui::TextDisabled("%s", model.stats->choice.c_str());
+        ImGui::PopTextWrapPos();
+    }
 }
 
 void drawStages(const protocol::Stats& stats) {
@@ -80,6 +86,14 @@ void drawLedger(const protocol::Ledger& ledger) {
     ImGui::EndTable();
 }
 
+void drawError(const protocol::ErrorEstimate& error) {
+    if (!beginTable("##error")) return;
+    row("map error, estimated", "%.1f %%", 100.0 * error.total);
+    row("too few photons", "%.1f %%", 100.0 * error.sampling);
+    row("too few wavelengths", "%.1f %%", 100.0 * error.spectral);
+    ImGui::EndTable();
+}
+
 }  // namespace
 
 void drawReadout(const Model& model) {
@@ -92,7 +106,9 @@ void drawReadout(const Model& model) {
     if (ImGui::CollapsingHeader("Plan")) drawPlan(*model.stats);
     if (!model.stats->ledger) return;
     ImGui::Spacing();
-    if (ImGui::CollapsingHeader("Where the light goes")) drawLedger(*model.stats->ledger);
+    if (!ImGui::CollapsingHeader("Where the light goes")) return;
+    drawLedger(*model.stats->ledger);
+    if (model.stats->error) drawError(*model.stats->error);
 }
 
 }  // namespace caustream::view

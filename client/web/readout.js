@@ -1,4 +1,4 @@
-// The readings: rates, the server's stage times, its plan, and where the light went.
+// The readings: rates, how wrong the map is, the server's stage times, its plan, and where the light went.
 
 const byId = (id) => document.getElementById(id);
 const kLedger = [
@@ -35,6 +35,7 @@ function bar(value, max, label) {
 }
 
 const milliseconds = (ms) => `${ms < 10 ? ms.toFixed(1) : ms.toFixed(0)} ms`;
+const perCent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 const words = (name) => name.replaceAll('_', ' ');
 
 export function showRates({ fps, roundTripMs, latencyMs }) {
@@ -50,6 +51,9 @@ export function showStats(stats) {
     byId('stages').tBodies[0].replaceChildren(...stages.map(({ pass, ms }) =>
         row(cell(words(pass)), bar(ms, longest, `${words(pass)} ${milliseconds(ms)}`), cell(milliseconds(ms), 'number'))));
 
+    byId('frame-time').textContent = milliseconds(stats.render_ms ?? 0);
+    byId('choice').textContent = stats.choice ?? '';
+    showError(stats.error);
     const facts = [`Rendered in ${milliseconds(stats.render_ms ?? 0)}`];
     if (stats.photons) facts.push(`${stats.photons.toLocaleString('en')} photons`);
     if (stats.window) facts.push(`window ${stats.window}`);
@@ -62,6 +66,14 @@ export function showStats(stats) {
         return tr;
     }));
     if (stats.ledger) showLedger(stats.ledger);
+}
+
+// error: nothing when there is no map to judge.
+function showError(error) {
+    byId('map-error').textContent = error ? perCent(error.total) : '–';
+    byId('error-line').textContent = error
+        ? `Estimated error of the map: ${perCent(error.sampling)} from too few photons, ${perCent(error.spectral)} from too few wavelengths.`
+        : '';
 }
 
 function showLedger(ledger) {
