@@ -102,6 +102,43 @@ tl::expected<Json, DecodeError> setPath(const Json& document, std::string_view p
     return leaf;
 }
 
+void extendPatch(Json& patch, const Json& next) {
+    for (const auto& [name, value] : next.items()) {
+        if (value.is_object() && patch.contains(name) && patch[name].is_object()) extendPatch(patch[name], value);
+        else patch[name] = value;
+    }
+}
+
+tl::expected<Setting, std::string> parseSetting(const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == 0 || equals == text.npos)
+        return tl::make_unexpected("--set " + text + ": write PATH=VALUE, for example lights.key.position=[1,2,0]");
+    const std::string value = text.substr(equals + 1);
+    Json json = Json::parse(value, nullptr, false);
+    if (json.is_discarded()) {
+        if (value.find_first_of("[]{}\"") != value.npos)
+            return tl::make_unexpected("--set " + text +
+                                       ": the value is not JSON; quote it for the shell, 'path=[\"a\",1]'");
+        json = value;
+    }
+    return Setting{text.substr(0, equals), std::move(json)};
+}
+
+tl::expected<Json, DecodeError> settingsPatch(const Json& document, const std::vector<Setting>& settings) {
+    Json merged = document, patch = Json::object();
+    for (const Setting& setting : settings) {
+        const auto part = setPath(merged, setting.path, setting.value);
+        if (!part) {
+            DecodeError error = part.error();
+            error.field = setting.path;
+            return tl::unexpected(std::move(error));
+        }
+        merged.merge_patch(*part);
+        extendPatch(patch, *part);
+    }
+    return patch;
+}
+
 Json sceneChange(const SceneRef& scene) {
     State shown;
     shown.scene = scene;

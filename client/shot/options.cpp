@@ -38,21 +38,6 @@ tl::expected<FileKind, std::string> kindOf(const std::string& file) {
 
 }  // namespace
 
-tl::expected<Setting, std::string> parseSetting(const std::string& text) {
-    const auto equals = text.find('=');
-    if (equals == 0 || equals == text.npos)
-        return tl::make_unexpected("--set " + text + ": write PATH=VALUE, for example lights.key.position=[1,2,0]");
-    const std::string value = text.substr(equals + 1);
-    protocol::Json json = protocol::Json::parse(value, nullptr, false);
-    if (json.is_discarded()) {
-        if (value.find_first_of("[]{}\"") != value.npos)
-            return tl::make_unexpected("--set " + text +
-                                       ": the value is not JSON; quote it for the shell, 'path=[\"a\",1]'");
-        json = value;
-    }
-    return Setting{text.substr(0, equals), std::move(json)};
-}
-
 tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) {
     const auto wrong = [](const std::string& why) {
         return tl::make_unexpected(ParseEnd{1, "caustream-shot: " + why + "; caustream-shot --help shows how\n"});
@@ -93,7 +78,7 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     if (!kind) return wrong(kind.error());
     options.kind = *kind;
     for (const auto& text : settings) {
-        auto setting = parseSetting(text);
+        auto setting = protocol::parseSetting(text);
         if (!setting) return wrong(setting.error());
         options.settings.push_back(std::move(*setting));
     }

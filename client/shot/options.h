@@ -5,21 +5,16 @@
 #include <vector>
 
 #include "client/connection/address.h"
-#include "protocol/state.h"
+#include "protocol/patch.h"
 
 namespace caustream::shot {
 
 enum class FileKind { Png, Npy, Jpeg };
 
-struct Setting {
-    std::string path;  // dotted, or a JSON Pointer
-    protocol::Json value;
-};
-
 struct Options {
     connection::Address address;
     std::string scene;  // empty: the server's own choice; otherwise a name or a .glb file
-    std::vector<Setting> settings;
+    std::vector<protocol::Setting> settings;
     std::string target = "composite";
     int width = 512, height = 512;
     int frames = 1;
@@ -29,9 +24,6 @@ struct Options {
     std::string out;
     FileKind kind = FileKind::Png;
 };
-
-// "a.b=VALUE": VALUE is JSON; what is not JSON is a string, so that words need no quotes.
-tl::expected<Setting, std::string> parseSetting(const std::string& text);
 
 struct ParseEnd {  // nothing to run: help was asked for, or the arguments are wrong
     int exitCode = 0;

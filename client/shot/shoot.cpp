@@ -64,22 +64,19 @@ Session::Done configure(Session& session, const Options& options) {
     }
 
     // One patch for all settings, as some hold only together; the resolved state gives arrays their elements.
-    Json document = session.state(), patch = streamPatch(options);
-    for (const auto& setting : options.settings) {
-        const auto part = protocol::setPath(document, setting.path, setting.value);
-        if (!part) return tl::make_unexpected("--set " + setting.path + ": " + part.error().message);
-        document.merge_patch(*part);
-        patch.merge_patch(*part);
-        // The protocol lets a name pass that the scene does not have; here it can only be a slip.
-        for (const char* kind : {"lights", "materials"}) {
-            if (!part->contains(kind) || !(*part)[kind].is_object()) continue;
-            const Json known = session.state().value(kind, Json::object());
-            for (const auto& [name, value] : (*part)[kind].items())
-                if (!known.contains(name))
-                    return tl::make_unexpected("--set " + setting.path + ": the scene has no such name; its " + kind +
-                                               " are " + namesOf(known));
-        }
+    Json patch = streamPatch(options);
+    const auto settings = protocol::settingsPatch(session.state(), options.settings);
+    if (!settings) return tl::make_unexpected("--set " + settings.error().field + ": " + settings.error().message);
+    // The protocol lets a name pass that the scene does not have; here it can only be a slip.
+    for (const char* kind : {"lights", "materials"}) {
+        if (!settings->contains(kind) || !(*settings)[kind].is_object()) continue;
+        const Json known = session.state().value(kind, Json::object());
+        for (const auto& [name, value] : (*settings)[kind].items())
+            if (!known.contains(name))
+                return tl::make_unexpected("--set " + std::string(kind) + "." + name + ": the scene has no such name; its " +
+                                           kind + " are " + namesOf(known));
     }
+    protocol::extendPatch(patch, *settings);
     return session.update(patch);
 }
 

@@ -134,5 +134,22 @@ TEST(SetPath, ReachesEveryLeafOfADocument) {
     }
 }
 
+TEST(Settings, AreJsonOrWords) {
+    EXPECT_EQ(parseSetting("camera.eye=[1,2,3]")->value, parse("[1,2,3]"));
+    EXPECT_EQ(parseSetting("transport.mode=thesis")->value, Json("thesis"));
+    EXPECT_EQ(parseSetting("/lights/a=b")->path, "/lights/a");
+    EXPECT_FALSE(parseSetting("camera.eye"));
+    EXPECT_FALSE(parseSetting("=3"));
+    EXPECT_FALSE(parseSetting("camera.eye=[1,2"));
+}
+
+TEST(Settings, MakeOnePatch) {
+    const Json document = parse(R"({"camera":{"eye":[1,2,3],"fov_y_deg":40}})");
+    const auto patch = settingsPatch(document, {{"camera.eye.0", 5}, {"camera.eye.2", 6}, {"camera.fov_y_deg", nullptr}});
+    ASSERT_TRUE(patch);
+    EXPECT_EQ(*patch, parse(R"({"camera":{"eye":[5,2,6],"fov_y_deg":null}})"));
+    EXPECT_EQ(settingsPatch(document, {{"camera.eye.7", 1}}).error().field, "camera.eye.7");
+}
+
 }  // namespace
 }  // namespace caustream::protocol
