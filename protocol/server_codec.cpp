@@ -105,9 +105,12 @@ StageTime decodeStage(const Item& item) {
     return stage;
 }
 
+std::string decodeSentence(const Item& item) { return item.text(kSentenceBytes); }
+
 PlanEntry decodePlanEntry(const Item& item) {
     Fields in(item);
-    PlanEntry entry{in.at("pass").text(kNameBytes), in.at("run").boolean(), in.at("reason").text(kSentenceBytes)};
+    PlanEntry entry{in.at("pass").text(kNameBytes), in.at("run").boolean(), in.at("reason").text(kSentenceBytes), {}};
+    if (const auto v = in.find("without")) entry.without = decodeList(*v, decodeSentence);
     in.finish();
     return entry;
 }
@@ -248,8 +251,10 @@ std::string encode(const Status& status) {
 std::string encode(const Stats& stats) {
     Json stages = Json::array(), plan = Json::array();
     for (const StageTime& stage : stats.stages) stages.push_back({{"pass", stage.pass}, {"ms", stage.ms}});
-    for (const PlanEntry& entry : stats.plan)
+    for (const PlanEntry& entry : stats.plan) {
         plan.push_back({{"pass", entry.pass}, {"run", entry.run}, {"reason", entry.reason}});
+        if (!entry.without.empty()) plan.back()["without"] = entry.without;
+    }
     Json json = {{"op", "stats"},
                  {"frame_seq", stats.frameSeq},
                  {"stages", std::move(stages)},

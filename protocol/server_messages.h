@@ -156,6 +156,7 @@ struct PlanEntry {
     std::string pass;
     bool run = false;
     std::string reason;
+    std::vector<std::string> without;  // of a pass that runs: the parts of it that this frame does not need, and why
     bool operator==(const PlanEntry&) const = default;
 };
 struct Ledger {  // flux over the flux per steradian on the light's axis: sr (m^2 for a directional light)

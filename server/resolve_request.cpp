@@ -146,7 +146,7 @@ protocol::Stats frameStats(const render::Frame& frame) {
         stats.stages.push_back({stage.pass, stage.ms});
     }
     for (const render::PlanEntry& entry : frame.stats.plan) {
-        stats.plan.push_back({entry.pass, entry.run, entry.reason});
+        stats.plan.push_back({entry.pass, entry.run, entry.reason, entry.without});
     }
     const render::EnergyLedger& ledger = frame.stats.ledger;
     if (ledger.onCasters != 0.0) {

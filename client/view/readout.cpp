@@ -66,6 +66,7 @@ void drawPlan(const protocol::Stats& stats) {
         ImGui::Indent();
         ImGui::PushTextWrapPos(0.0f);
         ImGui::TextDisabled("%s", entry.reason.c_str());
+        for (const std::string& part : entry.without) ImGui::TextDisabled("without %s", part.c_str());
         ImGui::PopTextWrapPos();
         ImGui::Unindent();
     }

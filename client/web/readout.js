@@ -61,7 +61,8 @@ export function showStats(stats) {
     byId('server-line').textContent = [facts.join(', ') + '.', ...(stats.warnings ?? [])].join(' ');
 
     byId('plan').tBodies[0].replaceChildren(...(stats.plan ?? []).map((entry) => {
-        const tr = row(cell(words(entry.pass)), cell(entry.run ? 'run' : 'skip', 'verdict'), cell(entry.reason));
+        const tr = row(cell(words(entry.pass)), cell(entry.run ? 'run' : 'skip', 'verdict'),
+            cell([entry.reason, ...(entry.without ?? []).map((part) => `without ${part}`)].join('; ')));
         tr.className = entry.run ? 'run' : 'skip';
         return tr;
     }));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/omission.h"
 #include "scene/scene.h"
 
 namespace caustream::render {
@@ -48,12 +49,14 @@ struct Request {
     int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side
     bool still = false;                     // 4x anti-aliasing, ledger always counted
     bool countResiduals = false;            // traces anew and fills FrameStats::residuals
+    Omissions forced;                       // done although the scene does not need them: for measuring and for tests
 };
 
 struct PlanEntry {
     std::string pass;
     bool run = false;
     std::string reason;                     // why it runs or why it need not
+    std::vector<std::string> without;       // of a pass that runs: parts of it that are not needed, and why
 };
 
 struct StageTime {

@@ -85,17 +85,12 @@ optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in) {
 
 }  // namespace
 
-struct LightSide::Emitter {
-    const scene::Object* caster;
-    const scene::Material* material;
-    View emission, back;
-};
-
-std::vector<LightSide::Emitter> LightSide::findEmitters(const Inputs& in, LightMaps& out) const {
-    std::vector<Emitter> emitters;
+LightFit LightSide::fit(const Inputs& in) {
+    LightFit fit;
+    const optics::WavelengthSet set = wavelengthsOf(in);
     std::vector<Landing> landings;
-    std::vector<double> coarse = {out.wavelengths.nm.front()};
-    if (out.wavelengths.nm.size() > 1) coarse.push_back(out.wavelengths.nm.back());
+    std::vector<double> coarse = {set.nm.front()};
+    if (set.nm.size() > 1) coarse.push_back(set.nm.back());
     for (const scene::Object& object : in.scene.geometry->objects) {
         const scene::Material& material = in.scene.materials[static_cast<std::size_t>(object.material)];
         if (!refracts(material, in.scene.outsideIndex)) continue;
@@ -105,24 +100,13 @@ std::vector<LightSide::Emitter> LightSide::findEmitters(const Inputs& in, LightM
         for (const Landing& landing : own) {
             landings.push_back({landing.position, landing.flux * static_cast<float>(emission->extent())});
         }
-        emitters.push_back({&object, &material, *emission, backView(in.scene, in.light, object)});
+        fit.casters.push_back({&object, &material, *emission, backView(in.scene, in.light, object)});
     }
-    if (emitters.empty()) {
-        out.warnings.push_back("the light \"" + in.light.name + "\" reaches no caster: aim it at one");
-        return {};
-    }
-    const auto views = mapViews(in.scene, in.light, landings);
-    if (!views) {
-        out.warnings.push_back("no light that passes a caster lands on a receiver: no caustic to show");
-        return {};
-    }
-    out.mapView = views->inner;
-    out.outerView = views->outer;
-    out.landing = views->landing;
-    return emitters;
+    if (!fit.casters.empty()) fit.views = mapViews(in.scene, in.light, landings);
+    return fit;
 }
 
-void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_t firstWavelength, std::size_t count,
+void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::size_t firstWavelength, std::size_t count,
                             double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out) {
     const int grid = in.transport.photonGrid;
     const glm::ivec2 front = gridSize(emitter.emission, grid);
@@ -168,7 +152,7 @@ void LightSide::traceCaster(const Inputs& in, const Emitter& emitter, std::size_
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back
 }
 
-void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
+void LightSide::tracePicture(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out) {
     const int size = in.transport.mapSize, levels = levelsOf(in.transport);
     const std::size_t texels = pyramidTexels(size, levels), outer = kOuterMapSize * kOuterMapSize;
     map_.ensure(layout::kMapWords * (texels + outer) * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
@@ -177,7 +161,7 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
     glm::dvec3 sum(0.0);
     for (const glm::dvec3& weight : out.wavelengths.xyz) sum += weight;
     const double fixedPerFlux = kFixedRange / (totalFlux_ * std::max({sum.x, sum.y, sum.z}));
-    for (const Emitter& emitter : emitters) traceCaster(in, emitter, 0, out.wavelengths.nm.size(), fixedPerFlux, timer, out);
+    for (const LitCaster& emitter : emitters) traceCaster(in, emitter, 0, out.wavelengths.nm.size(), fixedPerFlux, timer, out);
 
     timer.stage("map_resolve", [&] {
         const auto resolve = [&](const View& view, const gl::Texture& receivers, int side, int sideLevels, std::size_t first, bool judged, gl::Texture& concentration) {
@@ -194,7 +178,7 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<Emitter>& emitt
     if (in.hash) out.mapHash = fnv1a(kFnvStart, readWords(map_, layout::kMapWords * (texels + outer)));
 }
 
-void LightSide::traceBands(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out) {
+void LightSide::traceBands(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out) {
     const int size = in.transport.mapSize, levels = levelsOf(in.transport);
     const std::size_t finest = pyramidTexels(size, 1), texels = pyramidTexels(size, levels) + kOuterMapSize * kOuterMapSize;
     const std::size_t wavelengths = out.wavelengths.nm.size();
@@ -210,7 +194,7 @@ void LightSide::traceBands(const Inputs& in, const std::vector<Emitter>& emitter
         const std::size_t count = std::min(batch, wavelengths - first), words = texels * count;
         map_.ensure(words * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "fixed-point map");
         glClearNamedBufferData(map_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-        for (const Emitter& emitter : emitters) traceCaster(in, emitter, first, count, fixedPerFlux, timer, out);
+        for (const LitCaster& emitter : emitters) traceCaster(in, emitter, first, count, fixedPerFlux, timer, out);
         const std::vector<GLuint> map = readWords(map_, words);
         if (in.hash) out.mapHash = fnv1a(out.mapHash, map);
         for (const GLuint word : map) inMap += word;
@@ -225,7 +209,7 @@ void LightSide::traceBands(const Inputs& in, const std::vector<Emitter>& emitter
     out.ledger.deposited = inMap / (fixedPerFlux * static_cast<double>(wavelengths));
 }
 
-void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
+void LightSide::run(const Inputs& in, const LightFit& fit, gl::StageTimer& timer, LightMaps& out) {
     out.hasMap = false;
     out.bands.clear();
     out.warnings.clear();
@@ -237,7 +221,12 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
     totalFlux_ = 0.0;
     batches_ = 1;
     out.wavelengths = wavelengthsOf(in);
-    out.hasShadow = in.plan.runs("receiver_depth");
+    if (in.plan.casters > 0 && fit.casters.empty()) {
+        out.warnings.push_back("the light \"" + in.light.name + "\" reaches no caster: aim it at one");
+    } else if (!fit.casters.empty() && !fit.views) {
+        out.warnings.push_back("no light that passes a caster lands on a receiver: no caustic to show");
+    }
+    out.hasShadow = in.plan.shadow;
     if (out.hasShadow) {
         out.shadowView = shadowView(in.scene, in.light);
         timer.stage("receiver_depth", [&] {
@@ -245,9 +234,14 @@ void LightSide::run(const Inputs& in, gl::StageTimer& timer, LightMaps& out) {
         });
     }
     if (!in.plan.runs("photon_trace")) return;
-    const std::vector<Emitter> emitters = findEmitters(in, out);
-    if (emitters.empty()) return;
-    for (const Emitter& emitter : emitters) totalFlux_ += emitter.emission.extent();
+    // Where the plan runs this though no light lands (it was forced), any view of the receivers does.
+    const std::vector<LitCaster>& emitters = fit.casters;
+    const MapViews views = fit.views.value_or(MapViews{shadowView(in.scene, in.light), shadowView(in.scene, in.light), {}});
+    out.mapView = views.inner;
+    out.outerView = views.outer;
+    out.landing = views.landing;
+    for (const LitCaster& emitter : emitters) totalFlux_ += emitter.emission.extent();
+    if (emitters.empty()) totalFlux_ = 1.0;
 
     ledger_.ensure(layout::kLedgerBanks * layout::kLedgerRows * sizeof(GLuint), GL_DYNAMIC_STORAGE_BIT, "energy ledger");
     glClearNamedBufferData(ledger_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);

@@ -12,6 +12,7 @@
 #include "render/coarse_trace.h"
 #include "render/frame.h"
 #include "render/gpu_scene.h"
+#include "render/light_views.h"
 #include "render/passes/caster_layers.h"
 #include "render/passes/map_resolve.h"
 #include "render/passes/photon_list.h"
@@ -24,6 +25,8 @@ namespace caustream::render {
 // What the light did to the scene: the GPU images of one light pose and the numbers that go with them.
 struct LightMaps {
     bool hasShadow = false, hasMap = false;
+    int castersLit = 0;                    // casters that the light reaches
+    bool lands = false;                    // some of its light lands on a receiver
     View shadowView, mapView, outerView;
     gl::Texture shadow;                    // DEPTH_COMPONENT32F
     gl::Texture map, outerMap;             // RGBA32F concentration
@@ -36,6 +39,17 @@ struct LightMaps {
     std::uint64_t mapHash = 0;             // FNV-1a of the fixed-point map; 0 unless asked for
     std::vector<float> bands;              // [texel][wavelength] concentration, when bands were asked for
     std::vector<std::string> warnings;
+};
+
+// Which casters the light reaches, and the views fitted to where their light lands.
+struct LitCaster {
+    const scene::Object* caster;
+    const scene::Material* material;
+    View emission, back;
+};
+struct LightFit {
+    std::vector<LitCaster> casters;
+    std::optional<MapViews> views;         // nothing: none of their light lands on a receiver
 };
 
 class LightSide {
@@ -54,8 +68,10 @@ class LightSide {
     explicit LightSide(gl::ShaderLibrary& shaders)
         : casterLayers_(shaders), photonList_(shaders), receiverDepth_(shaders), photonTrace_(shaders), mapResolve_(shaders) {}
 
+    // On the CPU alone: what the plan has to know.
+    static LightFit fit(const Inputs& in);
     // Submits the passes that the plan runs.
-    void run(const Inputs& in, gl::StageTimer& timer, LightMaps& out);
+    void run(const Inputs& in, const LightFit& fit, gl::StageTimer& timer, LightMaps& out);
     // Reads ledger and photon count of the last run; waits for the GPU, so call it when the frame is submitted.
     void collect(LightMaps& out) const;
 
@@ -64,12 +80,10 @@ class LightSide {
     const gl::Texture& receivers() const { return receivers_; }
 
    private:
-    struct Emitter;                        // one caster in the light, with its views
-    std::vector<Emitter> findEmitters(const Inputs& in, LightMaps& out) const;
-    void traceCaster(const Inputs& in, const Emitter& emitter, std::size_t firstWavelength, std::size_t count,
+    void traceCaster(const Inputs& in, const LitCaster& emitter, std::size_t firstWavelength, std::size_t count,
                      double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out);
-    void traceBands(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out);
-    void tracePicture(const Inputs& in, const std::vector<Emitter>& emitters, gl::StageTimer& timer, LightMaps& out);
+    void traceBands(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out);
+    void tracePicture(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out);
 
     CasterLayers casterLayers_;
     PhotonList photonList_;

@@ -60,6 +60,16 @@ bool project(const View& view, const glm::vec3& p, glm::vec2& out) {
     return true;
 }
 
+// Whether the caster's bounding sphere lies beside the light's cone.
+bool outsideCone(const scene::Light& light, const scene::Bounds& caster) {
+    if (light.type != scene::LightType::Spot) return false;
+    const glm::vec3 to = caster.centre() - light.position;
+    const float distance = glm::length(to), radius = caster.radius();
+    if (distance <= radius) return false;
+    const float angle = std::acos(glm::clamp(glm::dot(to / distance, light.direction), -1.0f, 1.0f));
+    return angle > glm::radians(light.outerConeDeg) + std::asin(radius / distance) + 1e-3f;
+}
+
 // Where the caster's vertices lie in the view's image.
 Rect vertexRect(const scene::Scene& scene, const scene::Object& caster, const View& view) {
     Rect rect;
@@ -173,6 +183,7 @@ float depthSpread(const View& view, std::span<const Landing> landings) {
 }  // namespace
 
 std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster) {
+    if (outsideCone(light, caster.bounds)) return std::nullopt;
     View view = frame(scene, light, caster.bounds.centre());
     for (int pass = 0;; ++pass) {
         Rect rect = vertexRect(scene, caster, view);

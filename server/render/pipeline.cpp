@@ -126,7 +126,6 @@ struct Pipeline::Impl {
 
     SceneEntry& sceneEntry(const scene::Scene& scene);
     LightMaps& lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport, RenderPlan& plan, PlanFacts facts);
-    PlanFacts facts(const Request& request, const View& camera) const;
     void cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
                     const LightMaps& maps, const RenderPlan& plan, int width, int height);
     void picture(const Request& request, LightMaps& maps, float scale);
@@ -150,27 +149,6 @@ SceneEntry& Pipeline::Impl::sceneEntry(const scene::Scene& scene) {
     return *scenes.emplace_back(std::make_unique<SceneEntry>(scene));
 }
 
-PlanFacts Pipeline::Impl::facts(const Request& request, const View& camera) const {
-    PlanFacts facts;
-    const scene::Scene& scene = *request.scene;
-    for (const scene::Object& object : scene.geometry->objects) {
-        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
-        if (!material.caster) {
-            facts.shadowCasters = true;
-            continue;
-        }
-        const bool bends = refracts(material, scene.outsideIndex);
-        facts.casters += bends;
-        facts.thinWalled += material.thinWalled;
-        facts.idleCasters += !bends && !material.thinWalled;
-        facts.dispersive = facts.dispersive || (bends && (optics::isDispersive(material.dispersion) || !material.absorption.empty()));
-        if ((bends || material.thinWalled) && !projectedBox(object.bounds, camera, request.width, request.height).empty()) {
-            facts.castersInCamera = true;
-        }
-    }
-    return facts;
-}
-
 LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport,
                                      RenderPlan& plan, PlanFacts facts) {
     const scene::Light& light = request.scene->lights[static_cast<std::size_t>(key)];
@@ -179,11 +157,25 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     // The light's own images are not kept: looking at them means making them. So does a hash that was not taken.
     const bool shown = request.target == Target::Pass && (request.pass == "caster_layers" || request.pass == "receiver_depth");
     facts.lightCached = found != lights.end() && !shown && !request.countResiduals && !(request.still && found->maps.hasMap && found->maps.mapHash == 0);
-    plan = makePlan(facts, request);
-    if (facts.lightCached) {
+    const auto conclude = [&](const LightMaps& maps) {
+        facts.castersLit = maps.castersLit, facts.lands = maps.lands;
+        const auto& objects = request.scene->geometry->objects;
+        const auto receiversIn = [&](const View& view) {
+            return static_cast<int>(std::count_if(objects.begin(), objects.end(), [&](const scene::Object& object) {
+                return !request.scene->materials[static_cast<std::size_t>(object.material)].caster && inView(object, view);
+            }));
+        };
+        if (maps.hasShadow) facts.receiversInShadow = receiversIn(maps.shadowView);
+        if (maps.hasMap) facts.receiversInMap = receiversIn(maps.outerView);
+        plan = makePlan(facts, request);
+    };
+    const bool again = request.forced.has(Omission::UnchangedLight);
+    if (facts.lightCached && !again) {
         lights.splice(lights.begin(), lights, found);
-        return lights.front().maps;
+        conclude(found->maps);
+        return found->maps;
     }
+    plan = makePlan(facts, request);   // which wavelengths the light has to be fitted to
     if (found != lights.end()) {
         lights.splice(lights.begin(), lights, found);
     } else if (lights.size() < kMostLightMaps) {
@@ -195,23 +187,33 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     LightMaps& maps = lights.front().maps;
     const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals};
     const bool thesis = transport.mode == Mode::Thesis;
-    if (thesis) thesisSide.run(in, timer, maps);
-    else lightSide.run(in, timer, maps);
+    if (thesis) {
+        thesisSide.run(in, timer, maps);
+        maps.castersLit = maps.hasMap ? facts.casters : 0, maps.lands = maps.hasMap;
+    } else {
+        const LightFit fit = LightSide::fit(in);
+        facts.castersLit = maps.castersLit = static_cast<int>(fit.casters.size());
+        facts.lands = maps.lands = fit.views.has_value();
+        plan = makePlan(facts, request);
+        lightSide.run(in, fit, timer, maps);
+    }
     if (maps.hasMap && plan.runs("gap_fill")) timer.stage("gap_fill", [&] { gapFill.run(maps.map); });
     if (thesis) thesisSide.collect(maps);
     else lightSide.collect(maps);
     lights.front().key = wanted;
+    conclude(maps);
     return maps;
 }
 
 void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
                                 const LightMaps& maps, const RenderPlan& plan, int width, int height) {
     const scene::Scene& scene = *request.scene;
-    timer.stage("camera_receivers", [&] {
-        receivers.run({entry.gpu, scene.materials, lighting, view, width, height}, {color, depth});
-    });
-    const bool receiversAlone = request.target == Target::Pass && request.pass == "camera_receivers";
-    if (!plan.runs("dispersive_refraction") || receiversAlone) return;
+    if (plan.runs("camera_receivers")) {
+        timer.stage("camera_receivers", [&] {
+            receivers.run({entry.gpu, scene.materials, lighting, view, width, height}, {color, depth});
+        });
+    }
+    if (!plan.runs("camera_casters")) return;
 
     // Casters from back to front, each into the picture of what is behind it.
     std::vector<const scene::Object*> order;
@@ -222,14 +224,15 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
     std::sort(order.begin(), order.end(), [&](const scene::Object* a, const scene::Object* b) {
         return view.toView(a->bounds.centre()).z < view.toView(b->bounds.centre()).z;
     });
-    timer.stage("dispersive_refraction", [&] { refraction.begin(color); });
+    const bool refracted = plan.runs("dispersive_refraction");
+    if (refracted) timer.stage("dispersive_refraction", [&] { refraction.begin(color); });
     for (const scene::Object* object : order) {
         PixelBox box;
         timer.stage("camera_casters", [&] {
             const bool whole = request.target == Target::Pass && request.pass == "camera_casters";
             box = casters.run({entry.gpu, *object, view, width, height, whole}, {front, back});
         });
-        if (box.empty()) continue;
+        if (box.empty() || !refracted) continue;
         const scene::Material& material = scene.materials[static_cast<std::size_t>(object->material)];
         DispersiveRefraction::Glass glass;
         glass.thinWalled = material.thinWalled;
@@ -324,7 +327,8 @@ Frame Pipeline::run(const Request& request) {
     const View view = cameraView(request.camera, scene, request.width, request.height);
     const int key = keyLight(scene);
     RenderPlan plan;
-    LightMaps& maps = impl.lightMaps(request, entry, key, transport, plan, impl.facts(request, view));
+    const PlanFacts facts = gatherFacts(request, scene.lights[static_cast<std::size_t>(key)], view);
+    LightMaps& maps = impl.lightMaps(request, entry, key, transport, plan, facts);
     Frame frame;
     if (scene.lights.size() > 1) {
         frame.stats.warnings.push_back("several lights: \"" + scene.lights[static_cast<std::size_t>(key)].name +
@@ -333,7 +337,7 @@ Frame Pipeline::run(const Request& request) {
 
     // Camera's side
     std::optional<glm::vec3> landing;
-    if (maps.hasMap && scene.lights[static_cast<std::size_t>(key)].type != scene::LightType::Directional) {
+    if (maps.lands && scene.lights[static_cast<std::size_t>(key)].type != scene::LightType::Directional) {
         landing = maps.landing;
     }
     Lighting lighting = makeLighting(scene, key, landing);
@@ -343,12 +347,9 @@ Frame Pipeline::run(const Request& request) {
     const float unit = radianceUnit(lighting);
     const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey * std::exp2(scene.exposureBiasEv);
     frame.stats.exposureEv = std::log2(scale / unit);
-    const bool picture = request.target != Target::Spectral;
-    if (picture) {
-        const int zoom = request.still ? 2 : 1;
-        impl.cameraSide(request, entry, view, lighting, maps, plan, zoom * request.width, zoom * request.height);
-    }
-    const bool floats = request.target == Target::Spectral && request.sample != Sample::U8;
+    const int zoom = request.still ? 2 : 1;
+    impl.cameraSide(request, entry, view, lighting, maps, plan, zoom * request.width, zoom * request.height);
+    const bool floats = !plan.runs("present");
     if (!floats) impl.timer.stage("present", [&] { impl.picture(request, maps, request.sample == Sample::U8 ? scale : unit); });
 
     // Read-back

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/frame.h"
+#include "render/view.h"
 
 namespace caustream::render {
 
@@ -12,15 +13,28 @@ struct PlanFacts {
     int casters = 0;                    // that refract: index or absorption differs from the outside
     int idleCasters = 0;                // whose glass is the outside: nothing happens there
     int thinWalled = 0;
-    bool dispersive = false;            // some caster's index depends on the wavelength
-    bool shadowCasters = false;         // something can stand between the light and a receiver
+    int castersLit = 1;                 // of `casters`, in the light
+    bool lands = true;                  // some of the light that passes them lands on a receiver
+    bool dispersive = false;            // some caster's index or absorption depends on the wavelength
+    bool absorbing = false;             // some caster that refracts absorbs
+    int receivers = 0;
+    bool shadowCasters = false;         // a receiver can stand between the light and another
+    bool receiversTextured = false, receiversGlossy = false;
+    int receiversInShadow = 0, receiversInMap = 0;   // that have a part in the shadow's view, in the map's
+    bool outerEmpty = false;            // no light landed outside the inner map
+    bool cookie = false;                // of the key light
+    int lights = 1;
     bool castersInCamera = false;
+    int glass = 0, glassInCamera = 0;   // casters that are drawn: refracting or thin-walled
+    double boxShare = 0.0;              // of the picture's pixels, in the boxes of the casters in view
 };
 
 struct RenderPlan {
     std::vector<PlanEntry> entries;     // in the order of execution
     int wavelengths = 1;                // traced per photon, on the light's side and the camera's
     std::string wavelengthReason;
+    int casters = 0;                    // that refract
+    bool shadow = false;                // something throws one
 
     bool runs(const std::string& pass) const;
 };
@@ -28,7 +42,14 @@ struct RenderPlan {
 // The passes' names in order are those of passNames().
 RenderPlan makePlan(const PlanFacts& facts, const Request& request);
 
+// The rows of the camera's passes; `caustics`: there is a map to look up. Any mode's plan ends with them.
+void addCameraSide(RenderPlan& plan, const PlanFacts& facts, const Request& request, bool caustics);
+
+// What can be told of a request without drawing: all but what depends on where the light lands.
+PlanFacts gatherFacts(const Request& request, const scene::Light& key, const View& camera);
+
 // Whether light changes at the caster's surface or inside: index within 1e-6 of the outside's and no absorption is none.
 bool refracts(const scene::Material& material, double outsideIndex);
+bool absorbs(const scene::Material& material);
 
 }  // namespace caustream::render

@@ -53,14 +53,9 @@ RenderPlan makeThesisPlan(const PlanFacts& facts, const Request& request) {
     light("gap_fill", caustics && transport.gapFill && plan.wavelengths > 1 && !request.wavelengthBands, "asked for",
           transport.gapFill ? "one wavelength leaves no gaps" : "not asked for");
 
-    const bool picture = request.target != Target::Spectral;
-    const std::string noPicture = "the spectral map is sent, not a picture";
-    add("camera_receivers", picture, picture ? "a picture is wanted" : noPicture);
-    const bool glass = picture && facts.castersInCamera;
-    const std::string noGlass = picture ? "no caster is in the camera's view" : noPicture;
-    add("camera_casters", glass, glass ? "a caster is in the camera's view" : noGlass);
-    add("dispersive_refraction", glass, glass ? "a caster is in the camera's view" : noGlass);
-    add("present", picture, picture ? "a picture is wanted" : noPicture);
+    plan.casters = facts.casters;
+    plan.shadow = caustics || facts.shadowCasters;
+    addCameraSide(plan, facts, request, caustics);
     return plan;
 }
 

@@ -74,7 +74,7 @@ Stats fullStats() {
     Stats stats;
     stats.frameSeq = 12;
     stats.stages = {{"photon_trace", 3.5}};
-    stats.plan = {{"photon_trace", true, "the light moved"}, {"gap_fill", false, "not asked for"}};
+    stats.plan = {{"photon_trace", true, "the light moved", {"absorption: none"}}, {"gap_fill", false, "not asked for", {}}};
     stats.ledger = Ledger{8, 7, 0.25, 0.5, 0.125, 0.0625, 0.03125, 2};
     stats.error = ErrorEstimate{0.03125, 0.0625, 0.125};
     stats.choice = "grid 256: the most that 16 ms allow";
@@ -162,7 +162,7 @@ const std::vector<MessageSample<ServerMessage>>& serverSamples() {
          R"("error":{"sampling":0.03125,"spectral":0.0625,"total":0.125},"exposure_ev":-1.5,"frame_seq":12,"ledger":{"absorbed":0.25,"deposited":7.0,)"
          R"("left_map":0.03125,"no_receiver":2.0,"on_casters":8.0,"reflected":0.5,"rejected":0.0625,)"
          R"("total_reflection":0.125},"op":"stats","photons":25000,"plan":[{"pass":"photon_trace",)"
-         R"("reason":"the light moved","run":true},{"pass":"gap_fill","reason":"not asked for","run":false}],)"
+         R"("reason":"the light moved","run":true,"without":["absorption: none"]},{"pass":"gap_fill","reason":"not asked for","run":false}],)"
          R"("render_ms":30.5,"rtt_ms":4.5,"stages":[{"ms":3.5,"pass":"photon_trace"}],"warnings":["two lights"],"window":2})"},
         {Goaway{Goaway::Reason::Takeover, 100, 50},
          R"({"jitter_ms":50,"op":"goaway","reason":"takeover","reconnect_ms":100})"},

@@ -22,15 +22,6 @@ std::vector<gl::Flag> flags(bool shadow, bool map, bool texture, bool full) {
     return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}};
 }
 
-// Whether a material needs more than Lambert under one light: a highlight. Roughness 1 has none worth its price.
-bool glossy(const scene::Material& material) { return material.roughness < 0.95f || material.metallic > 0.0f; }
-
-// Whether any of the object can be in a light's view; what is not needs no lookup there.
-bool inView(const scene::Object& object, const View& view) {
-    const int grid = 256;  // the answer errs by one cell, to the safe side
-    return !projectedBox(object.bounds, view, grid, grid).empty();
-}
-
 // The square around the outer cone, which a cookie spans; upright in the world.
 View cookieView(const scene::Light& light) {
     View view;
@@ -40,6 +31,13 @@ View cookieView(const scene::Light& light) {
 }
 
 }  // namespace
+
+bool glossy(const scene::Material& material) { return material.roughness < 0.95f || material.metallic > 0.0f; }
+
+bool inView(const scene::Object& object, const View& view) {
+    const int grid = 256;  // the answer errs by one cell, to the safe side
+    return !projectedBox(object.bounds, view, grid, grid).empty();
+}
 
 CameraReceivers::CameraReceivers(gl::ShaderLibrary& shaders)
     : shaders_(shaders),

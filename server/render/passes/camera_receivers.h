@@ -12,6 +12,12 @@
 
 namespace caustream::render {
 
+// Whether a material needs more than Lambert under one light: a highlight. Roughness 1 has none worth its price.
+bool glossy(const scene::Material& material);
+
+// Whether any of the object can be in a light's view; what is not needs no lookup there.
+bool inView(const scene::Object& object, const View& view);
+
 class CameraReceivers {
    public:
     struct Inputs {
