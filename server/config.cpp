@@ -15,6 +15,7 @@ constexpr const char* kAbout = R"(Renders spectral caustics and streams them to 
   caustream-server --port 0              on any free port; the last line of output names it
   caustream-server --gpu list            show the GPUs there are
   caustream-server --bind 0.0.0.0 --token-file secret.txt   let other machines in, with a token
+  caustream-server --plan gem            say which passes this scene's frames run, and why; serve nothing
 
 Prints one line "ready http://..." on standard output once frames can be asked for; logs go to standard error.
 SIGTERM or Ctrl-C tells the viewers and ends.)";
@@ -49,6 +50,12 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
         ->check(CLI::ExistingDirectory);
     app.add_option("--log-level", level, "debug, info, warning or error")->capture_default_str();
     app.add_option("--max-sessions", config.maxSessions, "viewers at once")->check(CLI::Range(1, 64))->capture_default_str();
+    app.add_option("--plan", config.planScene, "a scene or a GLB file: print what its frames run, leave out, and why");
+    std::vector<std::string> settings;
+    app.add_option("--set", settings, "with --plan: PATH=VALUE, a value of the state document; repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
@@ -61,6 +68,16 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
         config.logLevel = *known;
     } else {
         throw Error("command line; --log-level " + level + "; try debug, info, warning or error");
+    }
+    if (!settings.empty() && config.planScene.empty()) {
+        throw Error("command line; --set says nothing without --plan; viewers set their own document");
+    }
+    for (const std::string& text : settings) {
+        auto setting = protocol::parseSetting(text);
+        if (!setting) {
+            throw Error("command line; " + setting.error());
+        }
+        config.settings.push_back(std::move(*setting));
     }
     if (!tokenFile.empty()) {
         config.token = readToken(tokenFile);

@@ -2,8 +2,10 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "log.h"
+#include "protocol/patch.h"
 
 namespace caustream {
 
@@ -16,6 +18,8 @@ struct Config {
     std::string shaderDir;        // empty: the shaders in the program
     log::Level logLevel = log::Level::Info;
     int maxSessions = 8;
+    std::string planScene;        // print its plan instead of serving: a built-in scene's name or a GLB file
+    std::vector<protocol::Setting> settings;  // of that scene's state document
 };
 
 // Nothing: --help was asked for and printed. Throws Error for options that make no sense.

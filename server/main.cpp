@@ -5,6 +5,7 @@
 #include "config.h"
 #include "error.h"
 #include "gl/context.h"
+#include "plan_report.h"
 #include "service.h"
 
 namespace {
@@ -38,6 +39,10 @@ int main(int argc, char** argv) {
             return 0;
         }
         caustream::log::setLevel(config->logLevel);
+        if (!config->planScene.empty()) {
+            std::fputs(caustream::planReport(*config).c_str(), stdout);
+            return 0;
+        }
         const sigset_t stopSignals = blockStopSignals();
 
         caustream::Service service(*config);

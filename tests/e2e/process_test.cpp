@@ -69,6 +69,22 @@ TEST(Process, HelpTeaches) {
     EXPECT_THAT(ended.out, HasSubstr("browser"));
 }
 
+TEST(Process, TellsAScenesPlan) {
+    const Ended gem = runServer({"--plan", "gem"});
+    EXPECT_EQ(gem.exitCode, 0) << gem.err;
+    EXPECT_THAT(gem.out, HasSubstr("run   photon_trace"));
+    EXPECT_THAT(gem.out, HasSubstr("skip  photon_trace"));   // after the camera moved
+    EXPECT_THAT(gem.out, HasSubstr("unchanged"));
+    const Ended dark = runServer({"--plan", "sphere", "--set", "lights.key.direction=[0,1,0]", "--set", "stream.target=spectral"});
+    EXPECT_THAT(dark.out, HasSubstr("the light reaches no caster"));
+    EXPECT_THAT(dark.out, HasSubstr("skip  camera_receivers"));
+    expectOneLine(runServer({"--plan", "no such scene"}), "gem");
+    expectOneLine(runServer({"--plan", "/no/such/file.glb"}), "/no/such/file.glb");
+    expectOneLine(runServer({"--plan", "gem", "--set", "camera.fov_y_deg=900"}), "camera.fov_y_deg");
+    expectOneLine(runServer({"--plan", "gem", "--set", "nonsense"}), "PATH=VALUE");
+    expectOneLine(runServer({"--set", "camera.fov_y_deg=30"}), "--plan");
+}
+
 TEST(Process, AShaderThatDoesNotCompile) {
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "broken_shaders";
     std::filesystem::remove_all(folder);
