@@ -1,6 +1,6 @@
 // Nearest hits, refined in double precision. Embree finds the candidate triangle in single precision; distance,
-// barycentrics and normals are then computed anew from the doubles. Solids are met exactly. What happens within 4e-7 of
-// a coordinate's size from an edge is left to Embree: a share of about 1e-6 of the photons.
+// barycentrics and normals are then computed anew from the doubles. Solids are met exactly. Within a rounding of an edge
+// the triangle is Embree's choice: on the built-in scenes 1 to 8 of a million hits lie just outside theirs.
 #pragma once
 #include <array>
 #include <cstdint>

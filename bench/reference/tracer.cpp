@@ -204,6 +204,7 @@ Difference difference(const float* a, const float* b, int columns, int rows) {
             sumB += there, xB += there * i, yB += there * j;
         }
     }
+    if (sumA == 0.0 && sumB == 0.0) return {0.0, 1.0, 0.0, 0.0};
     return {apart / sumB, sumA / sumB, std::hypot(xA / sumA - xB / sumB, yA / sumA - yB / sumB),
             worst * static_cast<double>(columns) * static_cast<double>(rows) / sumB};
 }

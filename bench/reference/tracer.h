@@ -93,7 +93,8 @@ Result trace(const World& world, const Settings& settings, const Progress& progr
 // that its result depends on, and used only if its own checksum is right; new ones are renamed into place.
 Result traceCached(const std::string& folder, const World& world, const Settings& settings, const Progress& progress = {});
 
-// relative L1 = sum |a - b| / sum b over the cells of a channel, and what goes with it.
+// relative L1 = sum |a - b| / sum b over the cells of a channel, and what goes with it. Two dark maps are equal; against
+// one dark map the ratios are not finite.
 struct Difference {
     double relativeL1 = 0, fluxRatio = 0;    // sum a / sum b
     double centroidCells = 0;                // between the centroids
