@@ -8,9 +8,9 @@ namespace caustream::tracer {
 
 namespace {
 
-// A Gaussian whose two sides have their own inverse widths (1/nm).
-double lobe(double nm, double middle, double below, double above) {
-    const double t = (nm - middle) * (nm < middle ? below : above);
+// A Gaussian whose two sides have their own standard deviations, nm.
+double lobe(double nm, double middle, double belowNm, double aboveNm) {
+    const double t = (nm - middle) / (nm < middle ? belowNm : aboveNm);
     return std::exp(-0.5 * t * t);
 }
 
@@ -19,10 +19,9 @@ constexpr double kBandNm = optics::kBandMaxNm - optics::kBandMinNm;
 }  // namespace
 
 glm::dvec3 wymanXyz(double nm) {
-    return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
-                0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
-            0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
-            1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
+    return {0.362 * lobe(nm, 442.0, 16.0, 26.7) + 1.056 * lobe(nm, 599.8, 37.9, 31.0) - 0.065 * lobe(nm, 501.1, 20.4, 26.2),
+            0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1),
+            1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
 }
 
 SpectrumSampler::SpectrumSampler(const optics::Spectrum& spectrum, Observer observer, int samples)

@@ -8,7 +8,8 @@
 namespace caustream::tracer {
 
 // CIE 1931 matching functions by the multi-lobe fit of Wyman, Sloan & Shirley 2013, Simple Analytic Approximations to
-// the CIE XYZ Color Matching Functions, eq. 4 and its table. Relative units.
+// the CIE XYZ Color Matching Functions, with widths in nm as the reference maps have them (the paper prints rounded
+// inverses: .07% less X). Relative units.
 glm::dvec3 wymanXyz(double nm);
 
 struct WavelengthSample {

@@ -76,7 +76,7 @@ TEST(TracerMaps, AgreesWithThePrismsContinuousSpectrum) {
                                         cells / kBlock, cells / kBlock);
         std::printf("prism, %c: relative L1 %.4f, flux ratio %.5f, centroid %.4f blocks\n", "XYZ"[c], d.relativeL1, d.fluxRatio, d.centroidCells);
         EXPECT_LE(d.relativeL1, 0.007);
-        EXPECT_NEAR(d.fluxRatio, 1.0, 0.0015);
+        EXPECT_NEAR(d.fluxRatio, 1.0, 1e-4);
         EXPECT_LE(d.centroidCells, 0.004);
     }
 }
