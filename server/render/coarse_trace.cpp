@@ -140,7 +140,7 @@ std::vector<Landing> CoarseTrace::trace(const scene::Scene& scene, const scene::
                 const double passed = (1.0 - optics::fresnelDielectric(cosIn, eta)) *
                                       (1.0 - optics::fresnelDielectric(cosOut, 1.0 / eta));
                 landings.push_back({exitPoint + landing->distance * glm::vec3(*out),
-                                    emitted * static_cast<float>(passed)});
+                                    emitted * static_cast<float>(passed), j * grid + i});
             }
         }
     }

@@ -12,6 +12,7 @@ namespace caustream::render {
 struct Landing {
     glm::vec3 position;   // on a receiver, world space
     float flux;           // relative
+    int photon = 0;       // of the grid that it was traced in; its wavelengths follow each other
 };
 
 // Fraction of the on-axis intensity that a spot sends along unit `direction` (KHR_lights_punctual); 1 for other lights.

@@ -23,6 +23,7 @@ constexpr double kMost = 2.0;
 ErrorEstimate estimateError(const MapDifferences& map) {
     ErrorEstimate error;
     error.sampling = std::min(std::hypot(kHalves * map.halves, kBlur * map.roughness), kMost);
+    error.spectral = std::min(map.spectralStep, kMost);
     error.total = std::min(std::hypot(error.sampling, error.spectral), kMost);
     return error;
 }

@@ -6,8 +6,9 @@ namespace caustream::render {
 
 // Measures of one map, each a share of the luminous flux in it.
 struct MapDifferences {
-    double halves = 0.0;      // sum over texels of |even - odd|, the luminance of the two halves of the photons
-    double roughness = 0.0;   // sum over the pyramid's coarser levels and their texels of |texel - mean of its neighbours|
+    double halves = 0.0;        // sum over texels of |even - odd|, the luminance of the two halves of the photons
+    double roughness = 0.0;     // sum over the pyramid's coarser levels and their texels of |texel - mean of its neighbours|
+    double spectralStep = 0.0;  // what it would change by, were each wavelength spread over the stretch it stands for
 };
 
 // Relative L1 of luminance, 0..2. Two maps of equal energy differ by no more than 2.

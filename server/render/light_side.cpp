@@ -152,6 +152,23 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back
 }
 
+void LightSide::judgeSpectrum(const Inputs& in, const std::vector<LitCaster>& emitters, const LightMaps& out) {
+    SpectralSpread all;
+    for (const LitCaster& emitter : emitters) {
+        const SpectralSpread own = spectralSpread(in.tracer, in.scene, in.light, *emitter.caster, emitter.emission, out.mapView);
+        const float flux = own.flux * static_cast<float>(emitter.emission.extent());
+        all.ends += flux * own.ends, all.bend += flux * own.bend, all.flux += flux;
+    }
+    if (all.flux <= 0.0f) return;
+    all.ends /= all.flux, all.bend /= all.flux;
+    const int size = in.transport.mapSize;
+    const glm::vec2 step = spectralStep(all, static_cast<int>(out.wavelengths.nm.size()), in.transport.wavelengths == kContinuous, size);
+    // All the light in one texel of the widest view still fits 32 bits.
+    const double perTexel = kFixedRange / 8.0 / totalFlux_ * texelExtent(out.mapView, size, size / 2 * (size + 1));
+    spectralStep_.run({out.map, step, perTexel}, ledger_);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);   // ledger -> read-back
+}
+
 void LightSide::tracePicture(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out) {
     const int size = in.transport.mapSize, levels = levelsOf(in.transport);
     const std::size_t texels = pyramidTexels(size, levels), outer = kOuterMapSize * kOuterMapSize;
@@ -175,6 +192,7 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<LitCaster>& emi
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                     GL_TEXTURE_UPDATE_BARRIER_BIT);   // map -> camera_receivers, gap_fill, read-back
+    if (in.plan.runs("spectral_step")) timer.stage("spectral_step", [&] { judgeSpectrum(in, emitters, out); });
     if (in.hash) out.mapHash = fnv1a(kFnvStart, readWords(map_, layout::kMapWords * (texels + outer)));
 }
 
@@ -281,7 +299,8 @@ void LightSide::collect(LightMaps& out) const {
         out.ledger.deposited = deposited * flux;
         if (deposited > 0.0) {
             out.error = estimateError({.halves = rows[layout::kLedgerHalves] / deposited,
-                                       .roughness = kRoughnessUnit * rows[layout::kLedgerRoughness] / deposited});
+                                       .roughness = kRoughnessUnit * rows[layout::kLedgerRoughness] / deposited,
+                                       .spectralStep = rows[layout::kLedgerStep] / std::max(rows[layout::kLedgerStepOf], 1.0)});
         }
     }
     if (!out.residuals) return;

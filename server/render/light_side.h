@@ -18,7 +18,9 @@
 #include "render/passes/photon_list.h"
 #include "render/passes/photon_trace.h"
 #include "render/passes/receiver_depth.h"
+#include "render/passes/spectral_step.h"
 #include "render/plan.h"
+#include "render/spectral_spread.h"
 
 namespace caustream::render {
 
@@ -66,7 +68,7 @@ class LightSide {
     };
 
     explicit LightSide(gl::ShaderLibrary& shaders)
-        : casterLayers_(shaders), photonList_(shaders), receiverDepth_(shaders), photonTrace_(shaders), mapResolve_(shaders) {}
+        : casterLayers_(shaders), photonList_(shaders), receiverDepth_(shaders), photonTrace_(shaders), mapResolve_(shaders), spectralStep_(shaders) {}
 
     // On the CPU alone: what the plan has to know.
     static LightFit fit(const Inputs& in);
@@ -83,6 +85,7 @@ class LightSide {
     void traceCaster(const Inputs& in, const LitCaster& emitter, std::size_t firstWavelength, std::size_t count,
                      double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out);
     void traceBands(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out);
+    void judgeSpectrum(const Inputs& in, const std::vector<LitCaster>& emitters, const LightMaps& out);
     void tracePicture(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out);
 
     CasterLayers casterLayers_;
@@ -90,6 +93,7 @@ class LightSide {
     ReceiverDepth receiverDepth_;
     PhotonTrace photonTrace_;
     MapResolve mapResolve_;
+    SpectralStep spectralStep_;
     gl::Texture front_, back_, receivers_, outerReceivers_;
     gl::Buffer list_, map_, ledger_, residuals_;
     int batches_ = 1;                      // of wavelengths, in each of which every photon is listed

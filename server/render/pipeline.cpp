@@ -185,6 +185,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     }
     lights.front().key.clear();   // not valid until it is done
     LightMaps& maps = lights.front().maps;
+    maps.error.reset();
     const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals};
     const bool thesis = transport.mode == Mode::Thesis;
     if (thesis) {
@@ -288,6 +289,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
     for (const int judged : {0, 1}) impl_->shaders.program("map_resolve", {{"FINEST", 1}, {"JUDGED", judged}});
     impl_->shaders.program("map_resolve", {{"FINEST", 0}, {"JUDGED", 1}});
+    impl_->shaders.program("spectral_step");
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
     report(1);
     impl_->receivers.warmUp();

@@ -107,6 +107,10 @@ bool addLightSide(RenderPlan& plan, const PlanFacts& facts, const Request& reque
     rows.light("photon_trace", caustics, counted(plan.wavelengths, "wavelength") + ": " + plan.wavelengthReason, none, trace);
     rows.light("map_resolve", caustics && !request.wavelengthBands, "photons were traced",
                caustics ? "the bands are sent as they are" : none, levels);
+    rows.light("spectral_step", caustics && facts.dispersive && !facts.lines && !request.wavelengthBands,
+               "what lies between the wavelengths is part of the error",
+               !caustics ? none : !facts.dispersive ? "no glass disperses"
+               : facts.lines ? "the light's lines are traced exactly" : "the bands are sent as they are");
     rows.light("gap_fill", caustics && transport.gapFill && plan.wavelengths > 1 && !request.wavelengthBands, "asked for",
                !transport.gapFill ? "not asked for" : !caustics ? none
                : request.wavelengthBands ? "the bands are sent as they are" : "one wavelength leaves no gaps");

@@ -22,6 +22,7 @@ struct PlanFacts {
     bool receiversTextured = false, receiversGlossy = false;
     int receiversInShadow = 0, receiversInMap = 0;   // that have a part in the shadow's view, in the map's
     bool outerEmpty = false;            // no light landed outside the inner map
+    bool lines = false;                 // the key light shines at single wavelengths
     bool cookie = false;                // of the key light
     int lights = 1;
     bool castersInCamera = false;

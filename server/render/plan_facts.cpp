@@ -69,6 +69,7 @@ PlanFacts gatherFacts(const Request& request, const scene::Light& key, const Vie
     facts.shadowCasters = facts.receivers > 0 && !inOnePlane(scene);
     facts.receiversInShadow = facts.receiversInMap = facts.receivers;
     facts.cookie = key.cookie >= 0;
+    facts.lines = std::holds_alternative<optics::Lines>(key.spectrum);
     facts.lights = static_cast<int>(scene.lights.size());
     facts.castersInCamera = facts.glassInCamera > 0;
     facts.boxShare = std::min(1.0, pixels / (double(request.width) * double(request.height)));

@@ -1,0 +1,20 @@
+#include "render/passes/spectral_step.h"
+
+#include "gl/uniforms.h"
+#include "shaders/shared/layout.h"
+
+namespace caustream::render {
+
+void SpectralStep::run(const Inputs& in, const gl::Buffer& ledger) {
+    const GLuint program = shaders_.program("spectral_step");
+    glUseProgram(program);
+    gl::Uniforms(program).set("u_map", 0).set("u_step", in.stepTexels).set("u_ledgerPerTexel", static_cast<float>(in.ledgerPerTexel));
+    glBindTextureUnit(0, in.map.get());
+    glBindSampler(0, linear_.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, ledger.get());
+    const int blocks = (in.map.width() / 4) * (in.map.height() / 4);
+    glDispatchCompute(static_cast<GLuint>((blocks + layout::kGroupSize - 1) / layout::kGroupSize), 1, 1);
+    glBindSampler(0, 0);
+}
+
+}  // namespace caustream::render
