@@ -5,8 +5,9 @@
 
 namespace caustream::bench {
 
-void addFrame(CLI::App& app);    // render times in this process
-void addReference(CLI::App& app);   // exact maps from the CPU
-void addStream(CLI::App& app);   // what the socket adds
+void addErrorVsTime(CLI::App& app);   // error and time of many configurations
+void addFrame(CLI::App& app);         // render times in this process
+void addReference(CLI::App& app);     // exact maps from the CPU
+void addStream(CLI::App& app);        // what the socket adds
 
 }  // namespace caustream::bench

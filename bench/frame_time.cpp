@@ -1,12 +1,10 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "bench/accuracy/subject.h"
 #include "bench/commands.h"
 #include "bench/statistics.h"
 #include "error.h"
@@ -33,17 +31,6 @@ struct Measured {
 };
 
 enum class Move { Light, Camera };
-
-// A scene whose key light's cone is so wide that the caster's bounding sphere fills `share` of it.
-scene::Scene withShare(scene::Scene scene, double share) {
-    scene::Light& light = scene.lights.front();
-    const scene::Bounds& caster = scene.geometry->casterBounds;
-    const double sine = 0.5 * (caster.max.y - caster.min.y) / glm::distance(light.position, caster.centre());
-    light.direction = glm::normalize(caster.centre() - light.position);
-    light.outerConeDeg = static_cast<float>(glm::degrees(std::acos(1.0 - (1.0 - std::sqrt(1.0 - sine * sine)) / share)));
-    light.innerConeDeg = std::min(light.innerConeDeg, light.outerConeDeg);
-    return scene;
-}
 
 Measured measure(render::Pipeline& pipeline, const scene::Scene& scene, const FrameOptions& options, int wavelengths, Move move) {
     render::Request request;

@@ -50,6 +50,9 @@ struct Request {
     bool still = false;                     // 4x anti-aliasing, ledger always counted
     bool countResiduals = false;            // traces anew and fills FrameStats::residuals
     Omissions forced;                       // done although the scene does not need them: for measuring and for tests
+    // Shown in place of the spectral map that is traced, to measure what the map's error does to a picture: RGB
+    // concentration, transport.mapSize a side, in the view of the map that it replaces.
+    std::shared_ptr<const std::vector<float>> spectralMap;
 };
 
 struct PlanEntry {

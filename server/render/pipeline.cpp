@@ -130,6 +130,7 @@ struct Pipeline::Impl {
                     const LightMaps& maps, const RenderPlan& plan, int width, int height);
     void picture(const Request& request, LightMaps& maps, float scale);
     const gl::Texture& mapOf(LightMaps& maps, int size);
+    void replaceMap(LightMaps& maps, const std::vector<float>& rgb);
 };
 
 // The spectral map, black where no light gets through.
@@ -140,6 +141,15 @@ const gl::Texture& Pipeline::Impl::mapOf(LightMaps& maps, int size) {
         glClearTexImage(maps.map.get(), 0, GL_RGBA, GL_FLOAT, black);
     }
     return maps.map;
+}
+
+// The newest light pose's map with other light in it; its receivers stay, and no later frame takes it for its own.
+void Pipeline::Impl::replaceMap(LightMaps& maps, const std::vector<float>& rgb) {
+    std::vector<float> texels(rgb.size() / 3 * 4);
+    glGetTextureImage(maps.map.get(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
+    for (std::size_t i = 0; i < rgb.size(); ++i) texels[i / 3 * 4 + i % 3] = rgb[i];
+    glTextureSubImage2D(maps.map.get(), 0, 0, 0, maps.map.width(), maps.map.height(), GL_RGBA, GL_FLOAT, texels.data());
+    lights.front().key.clear();
 }
 
 SceneEntry& Pipeline::Impl::sceneEntry(const scene::Scene& scene) {
@@ -331,6 +341,7 @@ Frame Pipeline::run(const Request& request) {
     RenderPlan plan;
     const PlanFacts facts = gatherFacts(request, scene.lights[static_cast<std::size_t>(key)], view);
     LightMaps& maps = impl.lightMaps(request, entry, key, transport, plan, facts);
+    if (request.spectralMap && maps.hasMap) impl.replaceMap(maps, *request.spectralMap);
     Frame frame;
     if (scene.lights.size() > 1) {
         frame.stats.warnings.push_back("several lights: \"" + scene.lights[static_cast<std::size_t>(key)].name +

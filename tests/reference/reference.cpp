@@ -36,9 +36,11 @@ scenes::Mesh casterMesh(const json& object, int sphereLevels) {
 
 }  // namespace
 
+std::string sceneFile(const std::string& name) { return kFolder + "/" + name + ".json"; }
+
 Reference load(const std::string& name) {
     Reference reference;
-    reference.json = readJson(kFolder + "/" + name + ".json");
+    reference.json = readJson(sceneFile(name));
     const json& window = reference.json.at("window");
     reference.window = {window.at("x0"), window.at("z0"), window.at("width"), window.at("cells")};
     const json& light = reference.json.at("light");

@@ -28,6 +28,9 @@ struct Reference {
     std::optional<npy::Array> xyz;  // [3][j][i] CIE XYZ of a flat spectrum, continuous; the prism alone has it
 };
 
+// The JSON file of a scene; it need not exist.
+std::string sceneFile(const std::string& name);
+
 // Throws std::runtime_error when a file is missing or damaged.
 Reference load(const std::string& name);
 
