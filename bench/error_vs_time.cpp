@@ -5,6 +5,7 @@
 #include "bench/accuracy_options.h"
 #include "bench/commands.h"
 #include "bench/statistics.h"
+#include "bench/vs_thesis.h"
 #include "error.h"
 
 namespace caustream::bench {
@@ -65,6 +66,11 @@ void errorVsTime(Options options) {
     Journal journal(options.out + "/results.jsonl", options.fresh);
     Study study(renderer, journal, options.study);
 
+    if (options.vsThesis) {
+        writeFile(options.out + "/vs-thesis.md", vsThesis(study, {.quick = options.quick}));
+        std::printf("\ncalibration: fixed loop %.1f ms\nwritten to %s: vs-thesis.md\n", calibrationMs(), options.out.c_str());
+        return;
+    }
     const std::vector<Configuration> configurations = configurationsOf(options);
     std::vector<Results> all;
     std::string markdown;
@@ -93,6 +99,8 @@ void addErrorVsTime(CLI::App& app) {
     command->add_option("--scene", options->scenes, subjectHelp())->capture_default_str();
     command->add_option("--config", options->configurations, "a further configuration: " + configurationHelp());
     command->add_flag("--only", options->only, "measure the given configurations alone");
+    command->add_flag("--vs-thesis", options->vsThesis,
+                      "instead: tables 3 and 4 of the thesis, for its algorithm and for this one, and the claims about both");
     addAccuracyOptions(*command, *options);
     command->footer("Times are whole frames after a move of the light. Errors are relative L1 = sum |a - b| / sum b against the exact reference.\n"
                     "Results are kept as they come: run the same command again to go on after it was stopped.\n"
