@@ -44,7 +44,8 @@ TEST_P(ReferenceMaps, AgreeWithTheTracer) {
     const reference::Reference reference = reference::load(limits.scene);
     const std::string folder = std::string(CAUSTREAM_TEST_DATA) + "/../reference/";
     const World world = worldOfJson(folder + limits.scene + ".json");
-    Settings settings{.wavelengthsNm = {380.0, 530.0, 680.0}, .photons = 1u << 16, .windows = {windowOf(reference)}};
+    // The maps end paths at 16 interfaces; the gem sends .3% of its violet through more.
+    Settings settings{.wavelengthsNm = {380.0, 530.0, 680.0}, .photons = 1u << 16, .maxInterfaces = 16, .windows = {windowOf(reference)}};
     const Result result = trace(world, settings);
     EXPECT_LE(result.worstClosure, 1e-12);
     for (int band = 0; band < 3; ++band) {
@@ -62,7 +63,7 @@ TEST_P(ReferenceMaps, AgreeWithTheTracer) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ReferenceMaps, testing::Values(Case{"sphere", 0.02, 5e-4, 0.005}, Case{"prism", 0.004, 5e-4, 0.002}, Case{"gem", 0.04, 0.006, 0.02}),
+INSTANTIATE_TEST_SUITE_P(All, ReferenceMaps, testing::Values(Case{"sphere", 0.02, 5e-4, 0.005}, Case{"prism", 0.004, 5e-4, 0.002}, Case{"gem", 0.03, 0.003, 0.005}),
                          [](const auto& entry) { return std::string(entry.param.scene); });
 
 TEST(TracerMaps, AgreesWithThePrismsContinuousSpectrum) {
