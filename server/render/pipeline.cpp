@@ -18,6 +18,7 @@
 #include "render/passes/dispersive_refraction.h"
 #include "render/passes/gap_fill.h"
 #include "render/passes/present.h"
+#include "render/passes/thesis_refraction.h"
 #include "render/read_back.h"
 #include "render/thesis_light_side.h"
 #include "render/thesis_plan.h"
@@ -113,6 +114,7 @@ struct Pipeline::Impl {
     CameraReceivers receivers;
     CameraCasters casters;
     DispersiveRefraction refraction;
+    ThesisRefraction thesisRefraction;
     Present present;
 
     std::vector<std::unique_ptr<SceneEntry>> scenes;
@@ -120,7 +122,7 @@ struct Pipeline::Impl {
     gl::Texture color, depth, front, back, output;
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
-        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), receivers(s), casters(s), refraction(s), present(s) {
+        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), receivers(s), casters(s), refraction(s), thesisRefraction(s), present(s) {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
     }
 
@@ -219,9 +221,12 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
 void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
                                 const LightMaps& maps, const RenderPlan& plan, int width, int height) {
     const scene::Scene& scene = *request.scene;
-    if (plan.runs("camera_receivers")) {
-        timer.stage("camera_receivers", [&] {
-            receivers.run({entry.gpu, scene.materials, lighting, view, width, height}, {color, depth});
+    const bool thesis = request.transport.mode == Mode::Thesis;
+    const char* const shading = thesis ? "thesis_receivers" : "camera_receivers";
+    const char* const through = thesis ? "thesis_refraction" : "dispersive_refraction";
+    if (plan.runs(shading)) {
+        timer.stage(shading, [&] {
+            receivers.run({entry.gpu, scene.materials, lighting, view, width, height, thesis}, {color, depth});
         });
     }
     if (!plan.runs("camera_casters")) return;
@@ -230,17 +235,18 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
     std::vector<const scene::Object*> order;
     for (const scene::Object& object : scene.geometry->objects) {
         const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
-        if (refracts(material, scene.outsideIndex) || (material.caster && material.thinWalled)) order.push_back(&object);
+        const bool thin = material.caster && material.thinWalled && !thesis;   // which has none
+        if (refracts(material, scene.outsideIndex) || thin) order.push_back(&object);
     }
     std::sort(order.begin(), order.end(), [&](const scene::Object* a, const scene::Object* b) {
         return view.toView(a->bounds.centre()).z < view.toView(b->bounds.centre()).z;
     });
-    const bool refracted = plan.runs("dispersive_refraction");
-    if (refracted) timer.stage("dispersive_refraction", [&] { refraction.begin(color); });
+    const bool refracted = plan.runs(through);
+    if (refracted) timer.stage(through, [&] { thesis ? thesisRefraction.begin(color) : refraction.begin(color); });
     for (const scene::Object* object : order) {
         PixelBox box;
         timer.stage("camera_casters", [&] {
-            const bool whole = request.target == Target::Pass && request.pass == "camera_casters";
+            const bool whole = thesis || (request.target == Target::Pass && request.pass == "camera_casters");
             box = casters.run({entry.gpu, *object, view, width, height, whole}, {front, back});
         });
         if (box.empty() || !refracted) continue;
@@ -254,7 +260,8 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
             glass.wavelengths.push_back({static_cast<float>(optics::refractiveIndex(material.dispersion, set.nm[i]) / scene.outsideIndex),
                                          glm::vec3(set.xyzToRgb * set.xyz[i]), static_cast<float>(material.absorption.at(set.nm[i]))});
         }
-        timer.stage("dispersive_refraction", [&] {
+        timer.stage(through, [&] {
+            if (thesis) return thesisRefraction.run({view, front, back, depth, glass, lighting}, color);
             refraction.run({view, front, back, box, object->bounds, depth, glass, lighting},
                            request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true}
                                          : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false},

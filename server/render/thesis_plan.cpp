@@ -56,6 +56,10 @@ RenderPlan makeThesisPlan(const PlanFacts& facts, const Request& request) {
     plan.casters = facts.casters;
     plan.shadow = caustics || facts.shadowCasters;
     addCameraSide(plan, facts, request, caustics);
+    for (PlanEntry& entry : plan.entries) {
+        if (entry.pass == "camera_receivers") entry.pass = "thesis_receivers";
+        if (entry.pass == "dispersive_refraction") entry.pass = "thesis_refraction";
+    }
     return plan;
 }
 

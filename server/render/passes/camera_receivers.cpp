@@ -51,7 +51,8 @@ void CameraReceivers::setFrame(const Inputs& in, GLuint program) const {
     const float perUnit = 1.0f / radianceUnit(lighting);
     uniforms.set("u_worldToClip", in.view.worldToClip())
         .set("u_eye", in.view.perspective ? glm::vec4(in.view.position(), 1.0f) : glm::vec4(-in.view.forward(), 0.0f))
-        .set("u_environment", lighting.environmentRadiance * perUnit);
+        .set("u_environment", lighting.environmentRadiance * perUnit)
+        .set("u_keyColour", lighting.keyRgb);
     setView(uniforms, "u_shadowView", lighting.shadowView);
     setView(uniforms, "u_mapView", lighting.mapView);
     uniforms.set("u_outerScale", lighting.mapView.halfExtent / lighting.outerView.halfExtent);
@@ -117,7 +118,7 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
         const bool lit = map && inView(object, lighting.outerView);
         const bool full = hasCookie || lighting.lights.size() > 1 || glossy(material);
         const GLuint program = shaders_.program(
-            "camera_receivers", flags(shadow, lit, material.baseColorTexture >= 0, full));
+            in.asPublished ? "thesis_receivers" : "camera_receivers", flags(shadow, lit, material.baseColorTexture >= 0, full));
         if (std::find(ready.begin(), ready.end(), program) == ready.end()) {
             setFrame(in, program);
             ready.push_back(program);

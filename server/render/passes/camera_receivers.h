@@ -26,6 +26,7 @@ class CameraReceivers {
         const Lighting& lighting;
         const View& view;                            // the camera's, perspective or parallel
         int width, height;                           // pixels
+        bool asPublished = false;                    // thesis_receivers: the thesis's shading with its gains
     };
     struct Outputs {
         gl::Texture& color;  // RGBA16F, linear BT.709 radiance over radianceUnit(); background: the environment. a = 1

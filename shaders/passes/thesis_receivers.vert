@@ -1,0 +1,1 @@
+#include "passes/camera_receivers.vert"
