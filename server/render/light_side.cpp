@@ -5,6 +5,7 @@
 
 #include "render/error_estimate.h"
 #include "render/light_views.h"
+#include "render/map_energy.h"
 #include "shaders/shared/layout.h"
 
 namespace caustream::render {
@@ -42,15 +43,6 @@ std::size_t pyramidTexels(int size, int levels) {
     std::size_t texels = 0;
     for (int level = 0; level < levels; ++level) texels += static_cast<std::size_t>(size >> level) * static_cast<std::size_t>(size >> level);
     return texels;
-}
-
-// The light's flux per unit solid angle (or area) at texel `index` of the map, as the divisor of concentration.
-double texelExtent(const View& view, int size, int index) {
-    const double hx = view.halfExtent.x, hy = view.halfExtent.y, area = 4.0 * hx * hy / (double(size) * size);
-    if (!view.perspective) return area;
-    const double x = ((index % size + 0.5) * 2.0 / size - 1.0) * hx, y = ((index / size + 0.5) * 2.0 / size - 1.0) * hy;
-    const double r2 = 1.0 + x * x + y * y;
-    return area / (r2 * std::sqrt(r2));
 }
 
 // The pyramid's levels added up at the finest, as map_resolve.comp does it: [texel][band], fixed-point units.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -13,6 +14,7 @@
 #include "render/key_light.h"
 #include "render/light_side.h"
 #include "render/light_uniforms.h"
+#include "render/map_energy.h"
 #include "render/passes/camera_casters.h"
 #include "render/passes/camera_receivers.h"
 #include "render/passes/dispersive_refraction.h"
@@ -131,9 +133,20 @@ struct Pipeline::Impl {
     void cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
                     const LightMaps& maps, const RenderPlan& plan, int width, int height);
     void picture(const Request& request, LightMaps& maps, float scale);
+    void fillGaps(LightMaps& maps, bool tell);
     const gl::Texture& mapOf(LightMaps& maps, int size);
     void replaceMap(LightMaps& maps, const std::vector<float>& rgb);
 };
+
+// For a still it is told what that did to the map's light.
+void Pipeline::Impl::fillGaps(LightMaps& maps, bool tell) {
+    const double before = tell ? mapFlux(maps.map, maps.mapView) : 0.0;
+    timer.stage("gap_fill", [&] { gapFill.run(maps.map); });
+    if (before <= 0.0) return;
+    char text[80];
+    std::snprintf(text, sizeof text, "gap filling multiplied the map's energy by %.2f", mapFlux(maps.map, maps.mapView) / before);
+    maps.warnings.push_back(text);
+}
 
 // The spectral map, black where no light gets through.
 const gl::Texture& Pipeline::Impl::mapOf(LightMaps& maps, int size) {
@@ -202,7 +215,6 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     const bool thesis = transport.mode == Mode::Thesis;
     if (thesis) {
         thesisSide.run(in, timer, maps);
-        maps.castersLit = maps.hasMap ? facts.casters : 0, maps.lands = maps.hasMap;
     } else {
         const LightFit fit = LightSide::fit(in);
         facts.castersLit = maps.castersLit = static_cast<int>(fit.casters.size());
@@ -210,7 +222,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
         plan = makePlan(facts, request);
         lightSide.run(in, fit, timer, maps);
     }
-    if (maps.hasMap && plan.runs("gap_fill")) timer.stage("gap_fill", [&] { gapFill.run(maps.map); });
+    if (maps.hasMap && plan.runs("gap_fill")) fillGaps(maps, request.still);
     if (thesis) thesisSide.collect(maps);
     else lightSide.collect(maps);
     lights.front().key = wanted;
@@ -296,7 +308,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     const auto report = [&](int done) {
         if (progress) progress(done, 4);
     };
-    // Those for a light with a cookie are compiled when one comes: few scenes have any.
+    // Those for a light with a cookie and those of the published algorithm are compiled when one comes: few do.
     impl_->shaders.program("photon_list", {{"COOKIE", 0}});
     for (const int bands : {0, 1}) {
         for (const int retry : {0, 1}) {

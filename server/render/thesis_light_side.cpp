@@ -1,12 +1,11 @@
 #include "render/thesis_light_side.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "render/light_views.h"
+#include "render/map_energy.h"
 #include "render/thesis_colours.h"
 
 namespace caustream::render {
@@ -16,12 +15,6 @@ namespace {
 constexpr int kCoarseGrid = 16;      // photons a side of the trace that tells whether the cone holds the caustic
 constexpr int kShadowSize = 1024;
 constexpr glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);   // BT.709
-
-std::vector<glm::vec4> readTexels(const gl::Texture& image) {
-    std::vector<glm::vec4> texels(static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height()));
-    glGetTextureImage(image.get(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
-    return texels;
-}
 
 std::uint64_t fnv1a(std::uint64_t hash, const std::vector<glm::vec4>& texels) {
     for (const glm::vec4& texel : texels) {
@@ -33,21 +26,6 @@ std::uint64_t fnv1a(std::uint64_t hash, const std::vector<glm::vec4>& texels) {
 }
 
 void clear(const gl::Texture& image, const glm::vec4& value) { glClearTexImage(image.get(), 0, GL_RGBA, GL_FLOAT, &value[0]); }
-
-// Image coordinates of a texel's middle: tangents, or metres.
-glm::vec2 texelPlace(const View& view, std::size_t texel, int size) {
-    const auto side = static_cast<std::size_t>(size);
-    const glm::vec2 at(static_cast<float>(texel % side), static_cast<float>(texel / side));
-    return (2.0f * (at + 0.5f) / static_cast<float>(size) - 1.0f) * view.halfExtent;
-}
-
-// The light's flux per unit intensity through a texel: solid angle, or area.
-double texelExtent(const View& view, std::size_t texel, int size) {
-    const double area = 4.0 * view.halfExtent.x * view.halfExtent.y / (static_cast<double>(size) * size);
-    const glm::vec2 at = texelPlace(view, texel, size);
-    const double r2 = 1.0 + glm::dot(at, at);
-    return view.perspective ? area / (r2 * std::sqrt(r2)) : area;
-}
 
 }  // namespace
 
@@ -142,11 +120,13 @@ double ThesisLightSide::fluxOn(const LightSide::Inputs& in, const View& view) co
     const glm::mat3 toWorld = glm::transpose(glm::mat3(view.worldToView));
     const std::vector<glm::vec4> texels = readTexels(front_);
     double flux = 0.0;
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        if (texels[i].w <= 0.0f) continue;
-        const glm::vec3 dir(texelPlace(view, i, front_.width()), -1.0f);
+    const int size = front_.width();
+    for (int i = 0; i < size * size; ++i) {
+        if (texels[static_cast<std::size_t>(i)].w <= 0.0f) continue;
+        const glm::vec2 uv = (glm::vec2(i % size, i / size) + 0.5f) / static_cast<float>(size);
+        const glm::vec3 dir((2.0f * uv - 1.0f) * view.halfExtent, -1.0f);
         const double share = view.perspective ? coneFalloff(in.light, glm::normalize(toWorld * dir)) : 1.0;
-        flux += share * texelExtent(view, i, front_.width());
+        flux += share * texelExtent(view, size, i);
     }
     return flux;
 }
@@ -169,7 +149,7 @@ void ThesisLightSide::readBack(const LightSide::Inputs& in, const std::vector<Ta
                 out.bands[i * bands + 4 * t + k] = band;
                 light += band / static_cast<double>(bands);
             }
-            deposited += light * texelExtent(out.mapView, i, size);
+            deposited += light * texelExtent(out.mapView, size, static_cast<int>(i));
         }
     }
     if (!in.hash || in.light.cookie >= 0) return;
@@ -184,6 +164,8 @@ void ThesisLightSide::run(const LightSide::Inputs& in, gl::StageTimer& timer, Li
     out.bands.clear();
     out.warnings.clear();
     out.ledger = {};
+    out.residuals.reset();
+    out.error.reset();
     out.photons = 0;
     out.mapHash = 0;
     casters_ = 0;
@@ -198,6 +180,8 @@ void ThesisLightSide::run(const LightSide::Inputs& in, gl::StageTimer& timer, Li
             receiverDepth_.run({in.gpu, in.scene.materials, view, kShadowSize, true, in.scene.outsideIndex}, out.shadow);
         });
     }
+    out.castersLit = static_cast<int>(casters.size());
+    out.lands = !casters.empty();
     if (!in.plan.runs("photon_splat")) return;
     if (casters.empty()) {
         out.warnings.push_back("the light \"" + in.light.name + "\" reaches no caster: aim it at one");

@@ -57,6 +57,7 @@ RenderPlan makeThesisPlan(const PlanFacts& facts, const Request& request) {
     plan.shadow = caustics || facts.shadowCasters;
     addCameraSide(plan, facts, request, caustics);
     for (PlanEntry& entry : plan.entries) {
+        entry.without.clear();   // it leaves nothing out: whole images, every wavelength
         if (entry.pass == "camera_receivers") entry.pass = "thesis_receivers";
         if (entry.pass == "dispersive_refraction") entry.pass = "thesis_refraction";
     }
