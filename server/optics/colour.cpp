@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
 #include "optics/cie_tables.h"
@@ -13,17 +14,20 @@ namespace {
 
 constexpr double kLineDNm = 587.56;  // helium d: where n_d is measured
 
+glm::dvec3 matching(Observer observer, double nm) { return observer == Observer::Cie1931 ? cieXyz(nm) : wymanXyz(nm); }
+
 // Integral of the matching functions times a power, from the start of the band, every nm.
 class CumulativeXyz {
  public:
-    explicit CumulativeXyz(const Spectrum& spectrum) {
+    CumulativeXyz(const Spectrum& spectrum, Observer observer) {
+        const auto density = [&](double at) { return matching(observer, at) * relativePower(spectrum, at); };
         sum_[0] = glm::dvec3(0.0);
         for (int i = 0; i < kCount; ++i) {
             // Midpoint and ends (Simpson 1743): exact for the piecewise linear tables.
             const double nm = kBandMinNm + i;
             sum_[i + 1] =
                 sum_[i] +
-                (density(spectrum, nm) + 4.0 * density(spectrum, nm + 0.5) + density(spectrum, nm + 1.0)) / 6.0;
+                (density(nm) + 4.0 * density(nm + 0.5) + density(nm + 1.0)) / 6.0;
         }
     }
 
@@ -37,13 +41,11 @@ class CumulativeXyz {
  private:
     static constexpr int kCount = static_cast<int>(kBandMaxNm - kBandMinNm);
 
-    static glm::dvec3 density(const Spectrum& spectrum, double nm) { return cieXyz(nm) * relativePower(spectrum, nm); }
-
     std::array<glm::dvec3, kCount + 1> sum_;
 };
 
 const CumulativeXyz& equalEnergyXyz() {
-    static const CumulativeXyz table{EqualEnergy{}};
+    static const CumulativeXyz table{EqualEnergy{}, Observer::Cie1931};
     return table;
 }
 
@@ -63,13 +65,14 @@ double luminance(const glm::dvec3& rgb) {
 }
 
 // Adds the light's colour and the matrix that divides by it, and scales the weights to Y = 1.
-void finish(WavelengthSet& set) {
+void finish(WavelengthSet& set, Observer observer) {
     glm::dvec3 sum(0.0);
     for (const glm::dvec3& xyz : set.xyz) sum += xyz;
     for (glm::dvec3& xyz : set.xyz) xyz /= sum.y;
+    for (glm::dvec3& xyz : set.cumulative) xyz /= sum.y;
     sum /= sum.y;
 
-    const glm::dmat3 toRgb = xyzToRgb();
+    const glm::dmat3 toRgb = xyzToRgb(observer);
     const glm::dvec3 rgb = toRgb * sum;
     const double brightest = std::max({rgb.r, rgb.g, rgb.b});
     glm::dmat3 rows = glm::transpose(toRgb);
@@ -82,11 +85,6 @@ void finish(WavelengthSet& set) {
     set.xyzToRgb = glm::transpose(rows);
     const glm::dvec3 inGamut = glm::max(rgb, glm::dvec3(0.0));
     set.lightRgb = inGamut / luminance(inGamut);
-}
-
-// nm at the fraction t of the band, uniform in 1/lambda^2: refraction by Cauchy glass is linear in it. t = 0 is red.
-double uniformInInverseSquare(double t) {
-    return 1.0 / std::sqrt(std::lerp(1.0 / (kBandMaxNm * kBandMaxNm), 1.0 / (kBandMinNm * kBandMinNm), t));
 }
 
 double middle(double aNm, double bNm) {
@@ -104,23 +102,27 @@ std::vector<double> usableLines(const Spectrum& spectrum) {
     return nm;
 }
 
+CumulativeXyz tableOf(const Spectrum& spectrum, Observer observer) {
+    const bool noLines = std::holds_alternative<Lines>(spectrum);   // none in the band, else they would be used
+    return {noLines ? Spectrum{EqualEnergy{}} : spectrum, observer};
+}
+
 // `edges` has one entry more than `nm`.
-WavelengthSet weigh(std::vector<double> nm, std::span<const double> edges, const Spectrum& spectrum) {
+WavelengthSet weigh(std::vector<double> nm, std::span<const double> edges, const Spectrum& spectrum, Observer observer) {
     WavelengthSet set;
     set.nm = std::move(nm);
     set.xyz.resize(set.nm.size(), glm::dvec3(0.0));
     if (const std::vector<double> lines = usableLines(spectrum); !lines.empty()) {
         for (double line : lines) {
             const auto upper = std::upper_bound(edges.begin() + 1, edges.end() - 1, line);
-            set.xyz[static_cast<std::size_t>(upper - edges.begin()) - 1] += cieXyz(line);
+            set.xyz[static_cast<std::size_t>(upper - edges.begin()) - 1] += matching(observer, line);
         }
     } else {
-        const bool noLines = std::holds_alternative<Lines>(spectrum);
-        const CumulativeXyz table(noLines ? Spectrum{EqualEnergy{}} : spectrum);
+        const CumulativeXyz table = tableOf(spectrum, observer);
         for (std::size_t i = 0; i < set.nm.size(); ++i)
             set.xyz[i] = glm::max(table.upTo(edges[i + 1]) - table.upTo(edges[i]), glm::dvec3(0.0));
     }
-    finish(set);
+    finish(set, observer);
     return set;
 }
 
@@ -135,34 +137,77 @@ glm::dvec3 cieXyz(double wavelengthNm) {
     return {std::lerp(a[0], b[0], t), std::lerp(a[1], b[1], t), std::lerp(a[2], b[2], t)};
 }
 
+glm::dvec3 wymanXyz(double wavelengthNm) {
+    if (!(wavelengthNm >= kBandMinNm && wavelengthNm <= kBandMaxNm)) return glm::dvec3(0.0);
+    const auto lobe = [&](double height, double middleNm, double belowNm, double aboveNm) {
+        const double t = (wavelengthNm - middleNm) / (wavelengthNm < middleNm ? belowNm : aboveNm);
+        return height * std::exp(-0.5 * t * t);
+    };
+    return {lobe(0.362, 442.0, 16.0, 26.7) + lobe(1.056, 599.8, 37.9, 31.0) - lobe(0.065, 501.1, 20.4, 26.2),
+            lobe(0.821, 568.8, 46.9, 40.5) + lobe(0.286, 530.9, 16.3, 31.1),
+            lobe(1.217, 437.0, 11.8, 36.0) + lobe(0.681, 459.0, 26.0, 13.8)};
+}
+
 glm::dvec3 intervalXyz(double aNm, double bNm) {
     const CumulativeXyz& table = equalEnergyXyz();
     return (table.upTo(bNm) - table.upTo(aNm)) / table.total().y;
 }
 
-glm::dmat3 xyzToRgb() {
-    const glm::dvec3 white = bt709() * intervalXyz(kBandMinNm, kBandMaxNm);
+glm::dmat3 xyzToRgb(Observer observer) {
+    const glm::dvec3 total = CumulativeXyz(EqualEnergy{}, observer).total();
+    const glm::dvec3 white = bt709() * (total / total.y);
     return scaleRows(bt709(), 1.0 / white);
 }
 
-WavelengthSet sampleWavelengths(int count, const Spectrum& spectrum) {
+double placeInBand(double x) {
+    return 1.0 / std::sqrt(std::lerp(1.0 / (kBandMinNm * kBandMinNm), 1.0 / (kBandMaxNm * kBandMaxNm), x));
+}
+
+WavelengthSet sampleWavelengths(int count, const Spectrum& spectrum, Observer observer) {
     if (const std::vector<double> lines = usableLines(spectrum); !lines.empty())
-        return sampleWavelengthsAt(lines, spectrum);
-    if (count <= 1) return sampleWavelengthsAt(std::array{kLineDNm}, spectrum);
+        return sampleWavelengthsAt(lines, spectrum, observer);
+    if (count <= 1) return sampleWavelengthsAt(std::array{kLineDNm}, spectrum, observer);
 
     std::vector<double> nm, edges{kBandMinNm};
     for (int i = count - 1; i >= 0; --i) {
-        nm.push_back(uniformInInverseSquare((i + 0.5) / count));
-        edges.push_back(i == 0 ? kBandMaxNm : uniformInInverseSquare(static_cast<double>(i) / count));
+        nm.push_back(placeInBand(1.0 - (i + 0.5) / count));
+        edges.push_back(i == 0 ? kBandMaxNm : placeInBand(1.0 - static_cast<double>(i) / count));
     }
-    return weigh(std::move(nm), edges, spectrum);
+    return weigh(std::move(nm), edges, spectrum, observer);
 }
 
-WavelengthSet sampleWavelengthsAt(std::span<const double> nm, const Spectrum& spectrum) {
+WavelengthSet continuousSpectrum(int nodes, const Spectrum& spectrum, Observer observer) {
+    if (const std::vector<double> lines = usableLines(spectrum); !lines.empty())
+        return sampleWavelengthsAt(lines, spectrum, observer);
+    WavelengthSet set;
+    const CumulativeXyz table = tableOf(spectrum, observer);
+    set.cumulative = {glm::dvec3(0.0)};
+    for (int i = 0; i < kSpectrumSteps; ++i) {
+        const auto upTo = [&](int step) {
+            return step == kSpectrumSteps ? table.total() : table.upTo(placeInBand(static_cast<double>(step) / kSpectrumSteps));
+        };
+        // The fit's red lobe dips below 0 near 500 nm; light is never taken away.
+        set.cumulative.push_back(set.cumulative.back() + glm::max(upTo(i + 1) - upTo(i), glm::dvec3(0.0)));
+    }
+    set.xyz.resize(static_cast<std::size_t>(nodes), glm::dvec3(0.0));
+    for (int i = 0; i < nodes; ++i) {
+        set.nm.push_back(i == 0 ? kBandMinNm : i + 1 == nodes ? kBandMaxNm : placeInBand(static_cast<double>(i) / (nodes - 1)));
+        const auto place = [&](double node) {
+            const double at = std::clamp(node / (nodes - 1), 0.0, 1.0) * kSpectrumSteps;
+            const auto step = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kSpectrumSteps - 1));
+            return glm::mix(set.cumulative[step], set.cumulative[step + 1], at - static_cast<double>(step));
+        };
+        set.xyz[static_cast<std::size_t>(i)] = place(i + 0.5) - place(i - 0.5);
+    }
+    finish(set, observer);
+    return set;
+}
+
+WavelengthSet sampleWavelengthsAt(std::span<const double> nm, const Spectrum& spectrum, Observer observer) {
     std::vector<double> edges{kBandMinNm};
     for (std::size_t i = 1; i < nm.size(); ++i) edges.push_back(middle(nm[i - 1], nm[i]));
     edges.push_back(kBandMaxNm);
-    return weigh({nm.begin(), nm.end()}, edges, spectrum);
+    return weigh({nm.begin(), nm.end()}, edges, spectrum, observer);
 }
 
 }  // namespace caustream::optics

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "optics/colour.h"
 #include "render/omission.h"
 #include "scene/scene.h"
 
@@ -16,6 +17,7 @@ namespace caustream::render {
 enum class Mode { Refined, Thesis };        // Thesis: as published (Blanchette 2012), the baseline of comparisons
 
 constexpr int kContinuous = 0;              // of Transport::wavelengths
+constexpr int kContinuousBands = 7;         // exact wavelengths of a map in bands that asks for it
 
 struct Transport {
     Mode mode = Mode::Refined;
@@ -46,6 +48,7 @@ struct Request {
     std::string pass;                       // Target::Pass: a name of passNames()
     Sample sample = Sample::U8;             // U8 for pictures; F16 or F32 for the spectral map; F32 pictures are linear
     bool wavelengthBands = false;           // Spectral: one band per wavelength instead of RGB
+    optics::Observer observer = optics::Observer::Cie1931;   // the fit: to compare with references made with it
     int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side
     bool still = false;                     // 4x anti-aliasing, ledger always counted
     bool countResiduals = false;            // traces anew and fills FrameStats::residuals

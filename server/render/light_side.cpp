@@ -12,11 +12,14 @@ namespace caustream::render {
 
 namespace {
 
+constexpr int kSeenWavelengths = 32;     // of a continuous spectrum on the camera's side, which traces a few nodes of them
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
 constexpr int kShadowSize = 1024;
 constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels
 constexpr double kRoughnessUnit = 16.0;       // of its row in the ledger: map_resolve.comp
 constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
+
+static_assert(optics::kSpectrumSteps == layout::kSpectrumSteps);
 
 std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words) {
     for (const GLuint word : words) hash = (hash ^ word) * 0x100000001b3ull;
@@ -71,8 +74,19 @@ std::vector<float> sumPyramid(const std::vector<GLuint>& map, int size, int leve
 
 optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in) {
     const Transport& transport = in.transport;
-    if (!transport.wavelengthsNm.empty()) return optics::sampleWavelengthsAt(transport.wavelengthsNm, in.light.spectrum);
-    return optics::sampleWavelengths(in.plan.wavelengths, in.light.spectrum);
+    if (!transport.wavelengthsNm.empty()) return optics::sampleWavelengthsAt(transport.wavelengthsNm, in.light.spectrum, in.observer);
+    if (in.plan.continuous) return optics::continuousSpectrum(in.plan.wavelengths, in.light.spectrum, in.observer);
+    return optics::sampleWavelengths(in.plan.wavelengths, in.light.spectrum, in.observer);
+}
+
+// The spectrum and the glass all along the band; empty unless it is continuous.
+std::vector<SpectrumStep> spectrumOf(const optics::WavelengthSet& set, const scene::Material& material, double outsideIndex) {
+    std::vector<SpectrumStep> steps;
+    for (const glm::dvec3& xyz : set.cumulative) {
+        const double nm = optics::placeInBand(static_cast<double>(steps.size()) / optics::kSpectrumSteps);
+        steps.push_back({xyz, outsideIndex / optics::refractiveIndex(material.dispersion, nm), material.absorption.at(nm)});
+    }
+    return steps;
 }
 
 }  // namespace
@@ -122,9 +136,19 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);   // list -> trace and its dispatch size
 
     std::vector<TracedWavelength> wavelengths;
+    const bool continuous = !out.wavelengths.cumulative.empty();
+    // Of a continuous spectrum: the luminance from this wavelength to the next.
+    const auto interval = [&](std::size_t i) {
+        const auto upTo = [&](std::size_t node) {
+            const double at = std::min(1.0, static_cast<double>(node) / static_cast<double>(count - 1)) * optics::kSpectrumSteps;
+            const auto step = std::min(static_cast<std::size_t>(at), out.wavelengths.cumulative.size() - 2);
+            return std::lerp(out.wavelengths.cumulative[step].y, out.wavelengths.cumulative[step + 1].y, at - static_cast<double>(step));
+        };
+        return upTo(i + 1) - upTo(i);
+    };
     for (std::size_t i = firstWavelength; i < firstWavelength + count; ++i) {
         const double nm = out.wavelengths.nm[i];
-        const double weightY = bands ? 1.0 / static_cast<double>(out.wavelengths.nm.size()) : out.wavelengths.xyz[i].y;
+        const double weightY = bands ? 1.0 / static_cast<double>(out.wavelengths.nm.size()) : continuous ? interval(i) : out.wavelengths.xyz[i].y;
         wavelengths.push_back({nm, in.scene.outsideIndex / optics::refractiveIndex(emitter.material->dispersion, nm),
                                emitter.material->absorption.at(nm), weightY, out.wavelengths.xyz[i]});
     }
@@ -132,7 +156,8 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
         photonTrace_.run({.front = front_, .back = back_, .receivers = receivers_, .outerReceivers = outerReceivers_,
                           .emission = emitter.emission, .backView = emitter.back, .mapView = out.mapView,
                           .outerView = out.outerView, .list = list_, .light = in.light, .cookie = cookie,
-                          .wavelengths = std::move(wavelengths), .bands = bands ? static_cast<int>(count) : 0,
+                          .wavelengths = std::move(wavelengths),
+                          .spectrum = spectrumOf(out.wavelengths, *emitter.material, in.scene.outsideIndex), .bands = bands ? static_cast<int>(count) : 0,
                           .fixedPerFlux = fixedPerFlux, .ledgerPerFlux = kFixedRange / totalFlux_,
                           .levels = levelsOf(in.transport),
                           .backSteps = in.transport.backSteps, .receiverSteps = in.transport.receiverSteps,
@@ -231,6 +256,7 @@ void LightSide::run(const Inputs& in, const LightFit& fit, gl::StageTimer& timer
     totalFlux_ = 0.0;
     batches_ = 1;
     out.wavelengths = wavelengthsOf(in);
+    out.seen = out.wavelengths.cumulative.empty() ? out.wavelengths : optics::sampleWavelengths(kSeenWavelengths, in.light.spectrum, in.observer);
     if (in.plan.casters > 0 && fit.casters.empty()) {
         out.warnings.push_back("the light \"" + in.light.name + "\" reaches no caster: aim it at one");
     } else if (!fit.casters.empty() && !fit.views) {

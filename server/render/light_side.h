@@ -33,7 +33,8 @@ struct LightMaps {
     gl::Texture shadow;                    // DEPTH_COMPONENT32F
     gl::Texture map, outerMap;             // RGBA32F concentration
     glm::vec3 landing{0.0f};               // where the caustic lies: the mean of its flux
-    optics::WavelengthSet wavelengths;
+    optics::WavelengthSet wavelengths;     // traced
+    optics::WavelengthSet seen;            // those of the camera's side: the same, or many of a continuous spectrum
     EnergyLedger ledger;
     std::optional<Residuals> residuals;    // when asked for
     std::optional<ErrorEstimate> error;
@@ -65,6 +66,7 @@ class LightSide {
         const RenderPlan& plan;
         bool bands = false, hash = false;
         bool countResiduals = false;
+        optics::Observer observer = optics::Observer::Cie1931;
     };
 
     explicit LightSide(gl::ShaderLibrary& shaders)

@@ -25,6 +25,7 @@
 #include "render/thesis_light_side.h"
 #include "render/thesis_plan.h"
 #include "scene/builtin_scenes.h"
+#include "shaders/shared/layout.h"
 
 namespace caustream::render {
 
@@ -77,6 +78,7 @@ std::string lightKey(const Request& request, const scene::Light& light, int phot
     const Transport& t = request.transport;
     key.add(t.mode), key.add(t.hierarchyLevels), key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.mapSize), key.add(t.backSteps);
     key.add(t.receiverSteps), key.add(t.gapFill), key.add(t.filter), key.add(t.forceDispersive), key.add(request.wavelengthBands);
+    key.add(request.observer);
     return key.bytes();
 }
 
@@ -211,7 +213,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     lights.front().key.clear();   // not valid until it is done
     LightMaps& maps = lights.front().maps;
     maps.error.reset();
-    const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals};
+    const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals, request.observer};
     const bool thesis = transport.mode == Mode::Thesis;
     if (thesis) {
         thesisSide.run(in, timer, maps);
@@ -266,7 +268,7 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
         DispersiveRefraction::Glass glass;
         glass.thinWalled = material.thinWalled;
         glass.tint = glm::vec3(material.baseColor);
-        const optics::WavelengthSet& set = maps.wavelengths;
+        const optics::WavelengthSet& set = maps.seen;
         const Transport& transport = request.transport;
         for (std::size_t i = 0; i < set.nm.size(); ++i) {
             glass.wavelengths.push_back({static_cast<float>(optics::refractiveIndex(material.dispersion, set.nm[i]) / scene.outsideIndex),
@@ -312,7 +314,9 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     impl_->shaders.program("photon_list", {{"COOKIE", 0}});
     for (const int bands : {0, 1}) {
         for (const int retry : {0, 1}) {
-            impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"COOKIE", 0}, {"RESIDUALS", 0}, {"RETRY", retry}});
+            for (int continuous = 0; continuous <= (bands ? 0 : 1); ++continuous) {
+                impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"CONTINUOUS", continuous}, {"COOKIE", 0}, {"RESIDUALS", 0}, {"RETRY", retry}});
+            }
         }
     }
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
@@ -358,7 +362,8 @@ Frame Pipeline::run(const Request& request) {
     const View view = cameraView(request.camera, scene, request.width, request.height);
     const int key = keyLight(scene);
     RenderPlan plan;
-    const PlanFacts facts = gatherFacts(request, scene.lights[static_cast<std::size_t>(key)], view);
+    PlanFacts facts = gatherFacts(request, scene.lights[static_cast<std::size_t>(key)], view);
+    facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
     LightMaps& maps = impl.lightMaps(request, entry, key, transport, plan, facts);
     if (request.spectralMap && maps.hasMap) impl.replaceMap(maps, *request.spectralMap);
     Frame frame;

@@ -67,11 +67,14 @@ class Rows {
 
 void chooseWavelengths(RenderPlan& plan, const PlanFacts& facts, const Request& request) {
     const Transport& transport = request.transport;
+    const bool continuous = transport.wavelengthsNm.empty() && transport.wavelengths == kContinuous;
     const int asked = !transport.wavelengthsNm.empty() ? static_cast<int>(transport.wavelengthsNm.size())
-                      : transport.wavelengths == kContinuous ? 7 : transport.wavelengths;
+                      : !continuous ? transport.wavelengths
+                      : request.wavelengthBands ? kContinuousBands : facts.continuousNodes;
     const bool forced = transport.forceDispersive || request.forced.has(Omission::Colours);
     if (facts.dispersive || forced || request.wavelengthBands || !transport.wavelengthsNm.empty()) {
         plan.wavelengths = asked;
+        plan.continuous = continuous && !request.wavelengthBands;
         plan.wavelengthReason = facts.dispersive ? "the glass disperses" : "asked for";
     } else {
         plan.wavelengths = 1;
@@ -104,7 +107,7 @@ bool addLightSide(RenderPlan& plan, const PlanFacts& facts, const Request& reque
     rows.light("photon_list", caustics, lit, none, facts.cookie ? Without{} : Without{cookie});
     rows.light("receiver_depth", caustics || plan.shadow, caustics ? "light lands behind a caster" : "a receiver throws a shadow",
                "nothing throws a shadow", shadowOrMap);
-    rows.light("photon_trace", caustics, counted(plan.wavelengths, "wavelength") + ": " + plan.wavelengthReason, none, trace);
+    rows.light("photon_trace", caustics, counted(plan.wavelengths, "wavelength") + (plan.continuous ? " and the spectrum between them: " : ": ") + plan.wavelengthReason, none, trace);
     rows.light("map_resolve", caustics && !request.wavelengthBands, "photons were traced",
                caustics ? "the bands are sent as they are" : none, levels);
     rows.light("spectral_step", caustics && facts.dispersive && !facts.lines && !request.wavelengthBands,

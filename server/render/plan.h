@@ -28,11 +28,13 @@ struct PlanFacts {
     bool castersInCamera = false;
     int glass = 0, glassInCamera = 0;   // casters that are drawn: refracting or thin-walled
     double boxShare = 0.0;              // of the picture's pixels, in the boxes of the casters in view
+    int continuousNodes = 4;            // exact wavelengths that this machine affords a continuous spectrum
 };
 
 struct RenderPlan {
     std::vector<PlanEntry> entries;     // in the order of execution
-    int wavelengths = 1;                // traced per photon, on the light's side and the camera's
+    int wavelengths = 1;                // traced per photon
+    bool continuous = false;            // and all that lies between them, on the light's side and the camera's
     std::string wavelengthReason;
     int casters = 0;                    // that refract
     bool shadow = false;                // something throws one

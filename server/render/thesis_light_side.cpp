@@ -171,6 +171,7 @@ void ThesisLightSide::run(const LightSide::Inputs& in, gl::StageTimer& timer, Li
     casters_ = 0;
     out.wavelengths = in.transport.wavelengthsNm.empty() ? thesisWavelengths(in.plan.wavelengths)
                                                          : thesisWavelengthsAt(in.transport.wavelengthsNm);
+    out.seen = out.wavelengths;
     out.hasShadow = in.plan.runs("receiver_depth");
     std::vector<const scene::Object*> casters;
     const View view = in.plan.runs("photon_splat") ? findView(in, out, casters) : wholeView(in.scene, in.light, {}, {});

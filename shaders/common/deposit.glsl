@@ -50,7 +50,12 @@ int cornerOf(Place place, int i) { return place.texel + (i & 1) + (i >> 1) * pla
 #if BANDS
 void deposit(Place place, int k, float flux) {
     vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
-    for (int i = 0; i < 4; ++i) atomicAdd(map[cornerOf(place, i) * u_bands + int(u_glass[k].w)], uint(share[i] + 0.5));
+    float carry = 0.0;   // what rounding kept back, to the next texel
+    for (int i = 0; i < 4; ++i) {
+        float whole = max(floor(share[i] + carry + 0.5), 0.0);
+        carry += share[i] - whole;
+        atomicAdd(map[cornerOf(place, i) * u_bands + int(u_glass[k].w)], uint(whole));
+    }
 }
 
 void depositAll(vec3 landed[kMostWavelengths], ivec2 size, int firstTexel, float share) {
@@ -59,18 +64,25 @@ void depositAll(vec3 landed[kMostWavelengths], ivec2 size, int firstTexel, float
     }
 }
 #else
+vec3 photonCarry = vec3(0.0);   // what rounding kept back of this photon's last deposit: its flux stays whole however it is split
+
 void addTo(int texel, vec3 xyz) {
-    uvec3 amount = uvec3(xyz + 0.5);
+    vec3 whole = max(floor(xyz + photonCarry + 0.5), vec3(0.0));
+    photonCarry += xyz - whole;
+    uvec3 amount = uvec3(whole);
     int first = texel * kMapWords;
     atomicAdd(map[first + kMapX], amount.x);
     atomicAdd(map[first + kMapEvenY + photonHalf], amount.y);
     atomicAdd(map[first + kMapZ], amount.z);
 }
 
-void deposit(Place place, int k, float flux) {
-    vec4 share = shares(place.f) * (flux * u_fixedPerFlux);
-    for (int i = 0; i < 4; ++i) addTo(cornerOf(place, i), share[i] * u_xyz[k].xyz);
+// `amount`: XYZ in fixed-point units.
+void deposit(Place place, vec3 amount) {
+    vec4 share = shares(place.f);
+    for (int i = 0; i < 4; ++i) addTo(cornerOf(place, i), share[i] * amount);
 }
+
+void deposit(Place place, int k, float flux) { deposit(place, u_xyz[k].xyz * (flux * u_fixedPerFlux)); }
 
 // Neighbouring wavelengths mostly land in the same texels: a run of them is gathered and written once.
 void depositAll(vec3 landed[kMostWavelengths], ivec2 size, int firstTexel, float share) {

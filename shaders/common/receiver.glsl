@@ -29,16 +29,24 @@ struct Meeting {
     float slope;      // 1/m; 0: no neighbour yet
 };
 
-// Follows the surface that a neighbouring ray met: one secant step from its meeting point, exact on a plane. False when
-// it does not settle on it; the ray must then be searched from its beginning.
-bool followReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, inout Meeting near, out vec2 uv) {
-    float a = near.t;
+// Follows the surface that a neighbouring ray met: secant steps from its meeting point, the first with its slope. The
+// second makes it exact on a plane however much the ray has turned; one is enough where it hardly turns. False when it
+// does not settle on it; the ray must then be searched from its beginning.
+bool followReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, const bool twice, inout Meeting near, out vec2 uv) {
+    float a = near.t, slope = near.slope;
     float fa = behindAt(view, layer, origin + a * direction, uv);
-    float b = a - fa / max(near.slope, 1e-20);
+    float b = a - fa / max(slope, 1e-20);
     float fb = behindAt(view, layer, origin + b * direction, uv);
+    if (twice) {
+        float turned = (fb - fa) / (b - a);
+        bool known = abs(fb) > 1e-5 && turned > 0.0;   // nearer, rounding leaves no slope to be known
+        slope = known ? turned : slope;
+        b = known ? b - fb / slope : b;
+        fb = behindAt(view, layer, origin + b * direction, uv);
+    }
     bool inside = all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
     bool met = near.slope > 0.0 && inside && b > 0.0 && abs(fb) <= 0.25 * kResidual;
-    if (met) near.t = b;
+    if (met) near = Meeting(b, slope);
     return met;
 }
 

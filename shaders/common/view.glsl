@@ -17,6 +17,11 @@ float layerToDepth(View view, float layer) {
     return view.perspective ? view.near / max(layer, 1e-30) : view.near + (1.0 - layer) * (view.far - view.near);
 }
 
+// Layer value of a view-space point.
+float layerOf(View view, vec3 pos) {
+    return view.perspective ? view.near / max(-pos.z, 1e-30) : 1.0 - (-pos.z - view.near) / (view.far - view.near);
+}
+
 // View-space point of the layer value at `uv`.
 vec3 layerToView(View view, vec2 uv, float layer) {
     float z = layerToDepth(view, layer);

@@ -45,75 +45,11 @@ uniform float u_exitTolerance;                 // m
 uniform float u_reach;                         // m: farther than any receiver
 #include "common/deposit.glsl"
 
-const float kLevelBias = 0.6;   // photons a texel apart show their lattice in texels of just that width
-const int kFollowSteps = 1;     // Newton steps from where the neighbouring wavelengths' ways point to
+#include "common/photon.glsl"
 
-// A photon where it meets the caster, in the back view's space.
-struct Entry {
-    vec4 layer;        // of the front layer, emission view
-    vec3 position, normal, direction;
-    float flux;
-};
-
-Entry entryAt(ivec2 texel) {
-    vec2 size = vec2(textureSize(u_front, 0));
-    vec2 uv = (vec2(texel) + 0.5) / size;
-    vec4 layer = texelFetch(u_front, clamp(texel, ivec2(0), ivec2(size) - 1), 0);
-    vec3 direction = viewDirection(u_emission, uv);
-    mat3 turn = mat3(u_emissionToBack);
-    return Entry(layer, (u_emissionToBack * vec4(layerToView(u_emission, uv, layer.w), 1.0)).xyz, turn * layer.xyz,
-                 turn * direction, emittedShare(direction) * texelExtent(u_emission, uv, 1.0 / size));
-}
-
-// First guess of the way inside: along the light's own ray.
-float guessWay(Entry entry) {
-    vec2 uv = viewToUv(u_backView, entry.position);
-    vec4 behind;
-    if (!sampleLayer(u_back, uv, behind)) return 5.0 * u_exitTolerance;
-    return max(distance(layerToView(u_backView, uv, behind.w), entry.position), 0.01 * u_exitTolerance);
-}
-
-// What became of a photon's flux, as rows of the ledger.
-struct Tally {
-    float absorbed, reflected, total;
-};
-
-// From entry to the outside: what is left of `flux`, and the ray in the map view's space. `way` starts as a guess.
-const int kLeaves = 0, kTotal = 1, kUnsettled = 2;
-int passThrough(Entry entry, int k, int steps, inout float way, out vec3 exitNormal, out vec3 origin, out vec3 ray,
-                inout float flux, out Tally tally) {
-    float eta = u_glass[k].x;
-    vec3 inside, outside;
-    float reflectance;
-    tally = Tally(0.0, 0.0, 0.0);
-    exitNormal = origin = ray = vec3(0.0);
-    bool enters = refractDielectric(entry.direction, entry.normal, eta, inside, reflectance);
-    if (!enters) {
-        tally.total = flux;
-        return kTotal;
-    }
-    tally.reflected = flux * reflectance;
-    flux *= 1.0 - reflectance;
-    if (!findExit(u_backView, u_back, entry.position, inside, steps, u_exitTolerance, way, exitNormal)) return kUnsettled;
-    tally.absorbed = flux * (1.0 - exp(-u_glass[k].y * way));
-    flux -= tally.absorbed;
-    if (!refractDielectric(inside, -exitNormal, 1.0 / eta, outside, reflectance)) {
-        tally.total = flux;
-        return kTotal;
-    }
-    tally.reflected += flux * reflectance;
-    flux *= 1.0 - reflectance;
-    origin = (u_backToMap * vec4(entry.position + way * inside, 1.0)).xyz;
-    ray = mat3(u_backToMap) * outside;
-    return kLeaves;
-}
-
-void book(int row, float flux) {
-    uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
-    if (flux > 0.0) atomicAdd(ledger[bank + uint(row)], uint(flux * u_ledgerPerFlux + 0.5));
-}
-
-#if RETRY
+#if CONTINUOUS && !BANDS    // bands are exact wavelengths
+#include "common/continuous.glsl"
+#elif RETRY
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= retryCount) return;
@@ -128,20 +64,19 @@ void main() {
     int outerFirst = firstTexelOf(u_levels, innerSize);
     Level level = levelOf(uintBitsToFloat(retry.y), innerSize);
 
-    float absorbed = 0.0, reflected = 0.0, total = 0.0, rejected = 0.0, left = 0.0, missed = 0.0;
+    Tally tally = Tally(0.0, 0.0, 0.0);
+    float rejected = 0.0, left = 0.0, missed = 0.0;
     uvec2 remaining = retry.zw;
     while ((remaining.x | remaining.y) != 0u) {
         int k = remaining.x != 0u ? findLSB(remaining.x) : 32 + findLSB(remaining.y);
         if (k < 32) remaining.x &= remaining.x - 1u;
         else remaining.y &= remaining.y - 1u;
 
-        float weight = u_glass[k].z, flux = entry.flux, way = guess;
+        float weight = u_glass[k].z, way = guess;
         vec3 exitNormal, origin, ray;
-        Tally tally;
-        int passed = passThrough(entry, k, u_backSteps, way, exitNormal, origin, ray, flux, tally);
-        absorbed += weight * tally.absorbed;
-        reflected += weight * tally.reflected;
-        total += weight * tally.total;
+        vec2 reflectance;
+        int passed = passThrough(entry, u_glass[k].x, u_backSteps, way, exitNormal, origin, ray, reflectance);
+        float flux = share(entry.flux, weight, passed, reflectance, u_glass[k].y, way, tally);
         if (passed == kUnsettled) rejected += weight * flux;
         if (passed != kLeaves) continue;
 
@@ -164,53 +99,12 @@ void main() {
         left += found == kLeftView ? weight * flux : 0.0;
         missed += found == kNoReceiver ? weight * flux : 0.0;
     }
-    book(kLedgerAbsorbed, absorbed);
-    book(kLedgerReflected, reflected);
-    book(kLedgerTotalReflection, total);
+    book(tally);
     book(kLedgerRejected, rejected);
     book(kLedgerLeftMap, left);
     book(kLedgerNoReceiver, missed);
 }
 #else
-
-// Where the photon of a neighbouring texel lands in the inner map at the longest wavelength; false when it takes another
-// way: another facet, a step in depth, another receiver.
-bool neighbourLanding(ivec2 texel, float way, vec3 ownExitNormal, Meeting meeting, out vec2 at) {
-    vec3 exitNormal, origin, ray;
-    Tally tally;
-    Entry entry = entryAt(texel);
-    float flux = entry.flux;
-    at = vec2(0.0);
-    return passThrough(entry, u_wavelengths - 1, kFollowSteps, way, exitNormal, origin, ray, flux, tally) == kLeaves &&
-           dot(exitNormal, ownExitNormal) > kSameSurfaceCos &&
-           followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
-}
-
-bool sameSurface(vec4 layer, vec4 own) {
-    return dot(layer.xyz, own.xyz) > kSameSurfaceCos && abs(layer.w - own.w) < 0.05 * own.w;
-}
-
-// Level of the pyramid whose texels are as wide as the photons lie apart around `at`, so that they neither leave holes
-// nor blur what they resolve.
-float levelAt(ivec2 texel, vec4 own, float way, vec3 exitNormal, Meeting meeting, vec2 at) {
-    vec2 mapSize = vec2(textureSize(u_receivers, 0));
-    ivec2 most = textureSize(u_front, 0) - 1;
-    float apart = -1.0;
-    for (int axis = 0; axis < 2; ++axis) {
-        ivec2 offset = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
-        ivec2 ahead = min(texel + offset, most), behind = max(texel - offset, ivec2(0));
-        bool forwards = sameSurface(texelFetch(u_front, ahead, 0), own) && ahead != texel;
-        vec2 other;
-        if ((forwards || sameSurface(texelFetch(u_front, behind, 0), own)) &&
-            neighbourLanding(forwards ? ahead : behind, way, exitNormal, meeting, other)) {
-            apart = max(apart, length((other - at) * mapSize));
-        }
-    }
-    float top = float(u_levels - 1);
-    // No neighbour goes its way: at the rim, where light spreads most.
-    return apart < 0.0 ? top : clamp(log2(max(apart, 1e-3)) + kLevelBias, 0.0, top);
-}
-
 void main() {
     uint photon = gl_GlobalInvocationID.x;
     if (photon >= count) return;
@@ -221,12 +115,11 @@ void main() {
     Entry entry = entryAt(texel);
 
     // The longest wavelength's way, and how far its neighbours land
-    float way = guessWay(entry), level = float(u_levels - 1), flux = entry.flux;
+    float way = guessWay(entry), level = float(u_levels - 1);
     vec3 exitNormal, origin, ray;
-    vec2 at;
-    Tally tally;
+    vec2 at, reflectance;
     Meeting meeting = Meeting(0.0, 0.0);
-    int passed = passThrough(entry, u_wavelengths - 1, u_backSteps, way, exitNormal, origin, ray, flux, tally);
+    int passed = passThrough(entry, u_glass[u_wavelengths - 1].x, u_backSteps, way, exitNormal, origin, ray, reflectance);
     bool allReflected = passed == kTotal, met = false;
     if (passed == kLeaves) {
         met = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) == kHit;
@@ -237,18 +130,17 @@ void main() {
 
     // All wavelengths from there: where each lands, and with how much. Its way is guessed from the two before it.
     vec3 landed[kMostWavelengths];           // uv in the inner map, flux; no flux: nowhere
-    float onCasters = 0.0, absorbed = 0.0, reflected = 0.0, total = 0.0, lastWay = way;
+    Tally tally = Tally(0.0, 0.0, 0.0);
+    float onCasters = 0.0, lastWay = way;
     uvec2 unsettled = uvec2(0u);
     int k = u_wavelengths - 1;
     while (true) {
         float weight = u_glass[k].z;
         onCasters += weight * entry.flux;
-        landed[k] = vec3(at, met ? flux : 0.0);
+        landed[k] = vec3(at, 0.0);
         // One step may reflect a ray that would leave: it is searched again, unless the longest is reflected as well.
         if (met || (passed == kTotal && allReflected)) {
-            absorbed += weight * tally.absorbed;
-            reflected += weight * tally.reflected;
-            total += weight * tally.total;
+            landed[k].z = share(entry.flux, weight, passed, reflectance, u_glass[k].y, way, tally);
         } else if (k < 32) {
             unsettled.x |= 1u << k;
         } else {
@@ -260,9 +152,8 @@ void main() {
             float guess = way + (way - lastWay);
             lastWay = way;
             way = guess;
-            flux = entry.flux;
-            passed = passThrough(entry, k, kFollowSteps, way, exitNormal, origin, ray, flux, tally);
-            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, meeting, at);
+            passed = passThrough(entry, u_glass[k].x, kFollowSteps, way, exitNormal, origin, ray, reflectance);
+            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, true, meeting, at);
         }
     }
     depositAll(landed, pyramid.fineSize, pyramid.fineFirst, 1.0 - pyramid.coarseShare);
@@ -273,8 +164,6 @@ void main() {
         retries[place] = uvec4(index, floatBitsToUint(level), unsettled);
     }
     book(kLedgerOnCasters, onCasters);
-    book(kLedgerAbsorbed, absorbed);
-    book(kLedgerReflected, reflected);
-    book(kLedgerTotalReflection, total);
+    book(tally);
 }
 #endif

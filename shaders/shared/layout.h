@@ -8,6 +8,8 @@ namespace caustream::layout {
 #endif
 
 LAYOUT_CONST kMostWavelengths = 64;
+LAYOUT_CONST kMostNodes = 7;           // exact wavelengths of a continuous spectrum
+LAYOUT_CONST kSpectrumSteps = 128;     // of its table of colours
 LAYOUT_CONST kGroupSize = 64;          // threads of a one-dimensional compute group
 LAYOUT_CONST kScanTexels = 16;         // texels one thread of photon_list looks at
 LAYOUT_CONST kMostLevels = 5;          // of the map's pyramid: a photon may be spread over 16 texels

@@ -9,7 +9,8 @@ namespace caustream::render {
 
 void PhotonTrace::dispatch(const Inputs& in, int retry, const gl::Buffer& groups) {
     const GLuint program = shaders_.program(
-        "photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}, {"RESIDUALS", in.residuals ? 1 : 0}, {"RETRY", retry}});
+        "photon_trace", {{"BANDS", in.bands > 0 ? 1 : 0}, {"CONTINUOUS", in.spectrum.empty() ? 0 : 1}, {"COOKIE", in.cookie ? 1 : 0},
+                         {"RESIDUALS", in.residuals ? 1 : 0}, {"RETRY", retry}});
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_emission", in.emission);
@@ -25,6 +26,13 @@ void PhotonTrace::dispatch(const Inputs& in, int retry, const gl::Buffer& groups
         glass.emplace_back(wavelength.indexRatio, wavelength.absorptionPerM, wavelength.luminance, glass.size());
         xyz.emplace_back(wavelength.xyz, 0.0);
     }
+    std::vector<glm::vec4> cumulative;
+    std::vector<float> absorption;
+    for (const SpectrumStep& step : in.spectrum) {
+        cumulative.emplace_back(step.cumulativeXyz, step.indexRatio);
+        absorption.push_back(static_cast<float>(step.absorptionPerM));
+    }
+    if (!in.spectrum.empty()) uniforms.set("u_cumulative", cumulative).set("u_absorption", absorption);
     uniforms.set("u_wavelengths", static_cast<int>(glass.size()))
         .set("u_bands", in.bands)
         .set("u_glass", glass)

@@ -18,6 +18,13 @@ struct TracedWavelength {
     glm::dvec3 xyz{0.0};              // weight in the map
 };
 
+// A place of a continuous spectrum, from violet to red, uniform in 1/lambda^2.
+struct SpectrumStep {
+    glm::dvec3 cumulativeXyz{0.0};    // of the light up to here
+    double indexRatio = 1.0;          // outside / inside the caster
+    double absorptionPerM = 0.0;
+};
+
 class PhotonTrace {
    public:
     struct Inputs {
@@ -28,6 +35,9 @@ class PhotonTrace {
         const scene::Light& light;
         GLuint cookie = 0;
         std::vector<TracedWavelength> wavelengths;           // <= kMostWavelengths
+        // Continuous: kSpectrumSteps + 1 places; the wavelengths are then the 2..kMostNodes nodes of it, ends included, and the
+        // luminance of each is that of the interval from it to the next. Empty: exact wavelengths.
+        std::vector<SpectrumStep> spectrum = {};
         int bands = 0;                                       // 0: XYZ; else one band per wavelength, of this many
         double fixedPerFlux = 1.0, ledgerPerFlux = 1.0;
         int levels = 1;                                      // of the inner map's pyramid

@@ -1,0 +1,221 @@
+// A continuous spectrum between few exact wavelengths, the nodes: samples of the spectrum land where interpolation puts
+// them, each with the colour of its own part of the band, so that every part of it arrives once whatever the samples.
+// Interpolated only between nodes that land on one surface; what lies between others is traced (RETRY 1).
+uniform vec4 u_cumulative[kSpectrumSteps + 1];  // XYZ up to a place of the band, violet to red, uniform in 1/lambda^2; n outside / n inside there
+uniform float u_absorption[kSpectrumSteps + 1]; // 1/m
+const float kOneSurface = 2e-3;                 // of the depth: the middle of two nodes lies on their surface within this
+const int kMostSamples = 12;                    // of a photon's spectrum
+const float kSparse = 4.0;                      // texels of a sample beyond which it is spread over wider ones
+const int kTracedSamples = 8;                   // of an interval that cannot be interpolated
+
+int intervals() { return u_wavelengths - 1; }
+
+// Linear in the table at `place` of the band, 0 (violet) to 1.
+vec4 spectrumAt(float place) {
+    float at = place * float(kSpectrumSteps);
+    int step = min(int(at), kSpectrumSteps - 1);
+    return mix(u_cumulative[step], u_cumulative[step + 1], at - float(step));
+}
+float absorptionAt(float place) {
+    float at = place * float(kSpectrumSteps);
+    int step = min(int(at), kSpectrumSteps - 1);
+    return mix(u_absorption[step], u_absorption[step + 1], at - float(step));
+}
+
+#if RETRY
+// The last sample traced, held back until the next one tells how far apart they land.
+struct Held {
+    bool landed;
+    vec2 at;
+    float apart;       // texels of the finest level; 0: no sample before it on its surface
+    vec3 amount;       // fixed-point units
+};
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= retryCount) return;
+    uvec4 retry = retries[item];
+    ivec2 size = textureSize(u_front, 0);
+    ivec2 texel = ivec2(retry.x % uint(size.x), retry.x / uint(size.x));
+    photonHalf = halfOf(texel);
+    Entry entry = entryAt(texel);
+    float guess = guessWay(entry), ownLevel = uintBitsToFloat(retry.y);
+    ivec2 innerSize = textureSize(u_receivers, 0), outerSize = textureSize(u_outerReceivers, 0);
+    int outerFirst = firstTexelOf(u_levels, innerSize);
+
+    Tally tally = Tally(0.0, 0.0, 0.0);
+    float rejected = 0.0, left = 0.0, missed = 0.0;
+    uint remaining = retry.z;
+    while (remaining != 0u) {
+        int interval = findLSB(remaining);
+        bool dark = (retry.w & (1u << interval)) != 0u;
+        remaining &= remaining - 1u;
+        Held held = Held(false, vec2(0.0), 0.0, vec3(0.0));
+        float first = float(interval) / float(intervals()), last = float(interval + 1) / float(intervals()), from = first;
+        vec3 before = spectrumAt(first).xyz;
+        // Where neither end lands, one sample of the whole interval (j = 0) is enough if it leaves or stays inside as well.
+        for (int j = dark ? 0 : 1; j <= kTracedSamples + 1; ++j) {
+            Held next = Held(false, vec2(0.0), 0.0, vec3(0.0));
+            bool trial = j == 0, flush = j > kTracedSamples;
+            float to = trial ? last : mix(first, last, min(float(j) / float(kTracedSamples), 1.0));
+            float place = 0.5 * (from + to), way = guess;
+            vec3 upTo = spectrumAt(to).xyz, colour = max(upTo - before, vec3(0.0)), exitNormal, origin, ray;
+            vec2 reflectance;
+            int passed = passThrough(entry, spectrumAt(place).w, u_backSteps, way, exitNormal, origin, ray, reflectance);
+            Tally own = Tally(0.0, 0.0, 0.0);
+            float flux = share(entry.flux, colour.y, passed, reflectance, absorptionAt(place), way, own);
+            int found = passed == kLeaves ? kLeftView : kRejected;
+            if (passed == kLeaves && !flush) {
+                Meeting met;
+                found = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, next.at, met);
+                next.landed = found == kHit && !trial;
+                next.amount = colour * (flux * u_fixedPerFlux);
+                if (found == kLeftView || found == kNoReceiver) {
+                    vec2 at;
+                    found = findReceiver(u_outerView, u_outerReceivers, origin, ray, u_reach, u_receiverSteps, at, met);
+                    if (found == kHit && !trial) deposit(placeAt(at, outerSize, outerFirst), next.amount);
+                }
+            }
+            bool lost = passed == kTotal || found == kLeftView || found == kNoReceiver;
+            if ((!trial || lost) && !flush) {
+                tally = Tally(tally.absorbed + own.absorbed, tally.reflected + own.reflected, tally.total + own.total);
+                rejected += found == kRejected ? colour.y * flux : 0.0;   // nothing is left of what is reflected totally
+                left += found == kLeftView ? colour.y * flux : 0.0;
+                missed += found == kNoReceiver ? colour.y * flux : 0.0;
+                before = upTo;
+                from = to;
+            }
+            float apart = held.landed && next.landed ? length((next.at - held.at) * vec2(innerSize)) : 0.0;
+            if (held.landed) {
+                // As wide as the samples lie apart on the nearer side: a jump to another surface is no gap.
+                float gap = min(apart > 0.0 ? apart : held.apart, held.apart > 0.0 ? held.apart : apart);
+                Level level = levelOf(clamp(max(ownLevel, log2(max(gap, 1e-3))), 0.0, float(u_levels - 1)), innerSize);
+                deposit(placeAt(held.at, level.fineSize, level.fineFirst), held.amount * (1.0 - level.coarseShare));
+                if (level.coarseShare > 0.0) deposit(placeAt(held.at, level.coarseSize, level.coarseFirst), held.amount * level.coarseShare);
+            }
+            next.apart = apart;
+            held = next;
+            if (trial && lost) break;
+        }
+    }
+    book(tally);
+    book(kLedgerRejected, rejected);
+    book(kLedgerLeftMap, left);
+    book(kLedgerNoReceiver, missed);
+}
+#else
+
+struct Node {
+    vec2 at;           // uv of the inner map
+    float way, layer;  // inside the caster, m; the receiver's layer value
+    vec2 reflectance;
+};
+
+void main() {
+    uint photon = gl_GlobalInvocationID.x;
+    if (photon >= count) return;
+    ivec2 size = textureSize(u_front, 0);
+    uint index = texels[photon];
+    ivec2 texel = ivec2(index % uint(size.x), index / uint(size.x));
+    photonHalf = halfOf(texel);
+    Entry entry = entryAt(texel);
+    ivec2 innerSize = textureSize(u_receivers, 0);
+
+    // The longest wavelength's way, and how far its neighbours land
+    float way = guessWay(entry), level = float(u_levels - 1);
+    vec3 exitNormal, origin, ray;
+    vec2 at, reflectance;
+    Meeting meeting = Meeting(0.0, 0.0);
+    int passed = passThrough(entry, u_glass[intervals()].x, u_backSteps, way, exitNormal, origin, ray, reflectance);
+    bool allReflected = passed == kTotal, met = false;
+    if (passed == kLeaves) {
+        met = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) == kHit;
+        if (!met) meeting.slope = 0.0;
+        if (u_levels > 1 && met) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
+    }
+
+    // All nodes from there, and which of the intervals between them lie on one surface
+    Node nodes[kMostNodes];
+    Tally tally = Tally(0.0, 0.0, 0.0);
+    float lastWay = way, spread = 0.0;
+    uint bridged = 0u, broken = 0u, dark = 0u;
+    bool lastMet = false, lastTotal = false;
+    int k = intervals();
+    while (true) {
+        vec3 landing = origin + meeting.t * ray;
+        nodes[k] = Node(at, way, layerOf(u_mapView, landing), reflectance);
+        bool total = passed == kTotal && allReflected;
+        if (k < intervals()) {
+            vec2 middle = 0.5 * (at + nodes[k + 1].at);
+            float straight = 0.5 * (nodes[k].layer + nodes[k + 1].layer);
+            bool oneSurface = abs(textureLod(u_receivers, middle, 0.0).x - straight) <= kOneSurface * straight;
+            if (met && lastMet && oneSurface) {
+                bridged |= 1u << k;
+                spread += length((at - nodes[k + 1].at) * vec2(innerSize));
+            } else if (total && lastTotal) {
+                share(entry.flux, u_glass[k].z, passed, reflectance, u_glass[k].y, way, tally);
+            } else {
+                broken |= 1u << k;
+                dark |= met || lastMet ? 0u : 1u << k;
+            }
+        }
+        lastMet = met;
+        lastTotal = total;
+        if (--k < 0) break;
+        // Glass that does not differ has no other way: white stays white at the rim too, where steps hardly settle.
+        if (u_glass[k].x != u_glass[k + 1].x) {
+            float ahead = way + (way - lastWay);
+            lastWay = way;
+            way = ahead;
+            passed = passThrough(entry, u_glass[k].x, kFollowSteps, way, exitNormal, origin, ray, reflectance);
+            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, true, meeting, at);
+        }
+    }
+
+    // Where the way from node to node bends: half the mean second difference of an interval's ends (Bessel's interpolation),
+    // from neighbouring intervals of the same surface.
+    vec2 bend[kMostNodes - 1];
+    for (int i = 0; i < intervals(); ++i) {
+        int before = max(i - 1, 0), after = min(i + 1, intervals() - 1);
+        bool hasBefore = i > 0 && (bridged & (1u << before)) != 0u, hasAfter = i < intervals() - 1 && (bridged & (1u << after)) != 0u;
+        vec2 step = nodes[i + 1].at - nodes[i].at;
+        vec2 atFirst = hasBefore ? step - (nodes[i].at - nodes[before].at) : vec2(0.0);
+        vec2 atLast = hasAfter ? nodes[after + 1].at - nodes[i + 1].at - step : vec2(0.0);
+        vec2 sum = 0.5 * (atFirst + atLast) * (hasBefore && hasAfter ? 0.5 : 1.0);
+        bend[i] = dot(sum, sum) <= 0.25 * dot(step, step) ? sum : vec2(0.0);
+    }
+
+    // Twice as many samples as texels lie under the spectrum, or fewer: then those of neighbouring photons lie between them,
+    // as each begins at another place of the band. Bins end at the nodes where an interval is left out.
+    float most = float(kMostSamples), parts = float(intervals());
+    level = clamp(max(level, log2(max(spread / (kSparse * most), 1e-3))), 0.0, float(u_levels - 1));
+    float wanted = clamp(ceil(2.0 * spread * exp2(-level)), 1.0, most);
+    if (broken != 0u) wanted = min(ceil(wanted / parts), floor(most / parts)) * parts;
+    float phase = broken != 0u ? 0.0 : fract(dot(vec2(texel), vec2(0.75487767, 0.56984029)));
+    Level pyramid = levelOf(level, innerSize);
+    float from = 0.0;
+    vec3 before = vec3(0.0);
+    for (int j = 0; from < 1.0 && bridged != 0u; ++j) {
+        float to = min((float(j + 1) - phase) / wanted, 1.0), place = 0.5 * (from + to), node = place * parts;
+        vec3 upTo = spectrumAt(to).xyz, colour = max(upTo - before, vec3(0.0));
+        before = upTo;
+        from = to;
+        int i = min(int(node), intervals() - 1);
+        float f = node - float(i);
+        Node a = nodes[i], b = nodes[i + 1];
+        float flux = (bridged & (1u << i)) != 0u ? entry.flux : 0.0;
+        flux = share(flux, colour.y, kLeaves, mix(a.reflectance, b.reflectance, f), absorptionAt(place), mix(a.way, b.way, f), tally);
+        vec2 landed = mix(a.at, b.at, f) - f * (1.0 - f) * bend[i];
+        vec3 amount = colour * (flux * u_fixedPerFlux);
+        deposit(placeAt(landed, pyramid.fineSize, pyramid.fineFirst), amount * (1.0 - pyramid.coarseShare));
+        if (pyramid.coarseShare > 0.0) deposit(placeAt(landed, pyramid.coarseSize, pyramid.coarseFirst), amount * pyramid.coarseShare);
+    }
+    if (broken != 0u) {
+        uint place = atomicAdd(retryCount, 1u);
+        atomicMax(retryGroups[0], place / uint(kGroupSize) + 1u);
+        retries[place] = uvec4(index, floatBitsToUint(level), broken, dark);
+    }
+    book(kLedgerOnCasters, entry.flux);
+    book(tally);
+}
+#endif
