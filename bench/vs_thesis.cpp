@@ -93,8 +93,6 @@ std::string errorsTable(const std::vector<Row>& rows, const std::string& head) {
     return table(cells);
 }
 
-std::string claim(bool met, const std::string& what) { return format("- %s: %s\n", met ? "met" : "NOT met", what.c_str()); }
-
 std::string claims(const Row& far, const Row& near) {
     std::string text;
     for (const Row* row : {&far, &near}) {

@@ -70,8 +70,7 @@ std::string Configuration::name() const {
 
 std::string Configuration::label() const {
     const render::Transport& t = transport;
-    std::string label = t.wavelengths == render::kContinuous ? "" : wavelengthsName(t.wavelengths) + " at ";
-    label += std::to_string(t.photonGrid) + "/" + std::to_string(t.mapSize);
+    std::string label = wavelengthsName(t.wavelengths) + " at " + std::to_string(t.photonGrid) + "/" + std::to_string(t.mapSize);
     if (t.mode == render::Mode::Refined && t.backSteps != 4) label += ", " + std::to_string(t.backSteps) + (t.backSteps == 1 ? " step" : " steps");
     return label;
 }

@@ -16,7 +16,7 @@ constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#5
 
 std::string number(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
+    std::snprintf(text, sizeof text, std::abs(value) < 1e4 ? "%.4g" : "%.0f", value);
     return text;
 }
 
@@ -81,6 +81,7 @@ struct Box {
 class Labels {
    public:
     void occupy(double x, double y, double half) { taken_.push_back({x - half, y - half, x + half, y + half}); }
+    void occupyBox(double x0, double y0, double x1, double y1) { taken_.push_back({x0, y0, x1, y1}); }
 
     void place(std::ostream& out, double x, double y, const std::string& what) {
         constexpr double kLetter = 6.1, kRow = 12;
@@ -156,20 +157,25 @@ std::string svg(const Plot& plot) {
     // Front, points, names of the front's members
     const std::vector<std::size_t> front = paretoFront(costs);
     out << "<polyline fill=\"none\" stroke=\"#222\" stroke-width=\"1.4\" points=\"";
-    for (const std::size_t i : front) out << number(x.at(costs[i].ms)) << "," << number(y.at(costs[i].error)) << " ";
-    out << "\"/>\n";
+    // A step: until the next member's time this one is the best there is.
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        const Cost& own = costs[front[i]];
+        if (i > 0) out << number(x.at(own.ms)) << "," << number(y.at(costs[front[i - 1]].error)) << " ";
+        out << number(x.at(own.ms)) << "," << number(y.at(own.error)) << " ";
+    }
+    out << number(kRight) << "," << number(y.at(costs[front.back()].error)) << "\"/>\n";
     Labels labels;
     for (const PlotPoint& point : plot.points) {
         labels.occupy(x.at(point.cost.ms), y.at(point.cost.error), 7.0);
         const auto family = static_cast<std::size_t>(std::ranges::find(families, point.family) - families.begin());
         marker(out, family, x.at(point.cost.ms), y.at(point.cost.error));
     }
-    for (std::size_t i = 0; i + 1 < front.size(); ++i) {   // names keep off the line
-        for (int k = 1; k < 12; ++k) {
-            const auto between = [&](double a, double b) { return a + (b - a) * k / 12.0; };
-            labels.occupy(between(x.at(costs[front[i]].ms), x.at(costs[front[i + 1]].ms)),
-                          between(y.at(costs[front[i]].error), y.at(costs[front[i + 1]].error)), 2.0);
-        }
+    for (std::size_t i = 0; i < front.size(); ++i) {   // names keep off the line
+        const bool last = i + 1 == front.size();
+        const double x0 = x.at(costs[front[i]].ms), x1 = last ? kRight : x.at(costs[front[i + 1]].ms);
+        const double y0 = y.at(costs[front[i]].error), y1 = last ? y0 : y.at(costs[front[i + 1]].error);
+        labels.occupyBox(x0, y0 - 1, x1, y0 + 1);
+        labels.occupyBox(x1 - 1, std::min(y0, y1), x1 + 1, std::max(y0, y1));
     }
     for (const std::size_t i : front) labels.place(out, x.at(costs[i].ms), y.at(costs[i].error), plot.points[i].label);
 

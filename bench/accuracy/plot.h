@@ -18,7 +18,7 @@ struct Plot {
     double noise = 0;           // the reference's own error: a dashed line below which nothing can be told apart; 0: none
 };
 
-// Points by family, the Pareto front as a line with its members named, budgets of 16 and 50 ms marked.
+// Points by family, the Pareto front as a staircase with its members named, budgets of 16 and 50 ms marked.
 std::string svg(const Plot& plot);
 
 }  // namespace caustream::bench

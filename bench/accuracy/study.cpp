@@ -34,11 +34,19 @@ void Study::time(const Job& job) {
     render::Pipeline& pipeline = renderer_.pipeline(job.configuration, job.subject->fingerprint);
     render::Request request = pictureRequest(job.subject->scene, job.configuration, settings_.truth.pictureSize);
     const int warmUp = warm_.insert(job.subject->fingerprint + job.configuration.name()).second ? kPosesKept : 1;
-    std::vector<double> ms, lightMs;
-    for (int i = 0; i < warmUp + settings_.frames; ++i) {
+    const auto nextFrame = [&] {
         request.scene = std::make_shared<const scene::Scene>(withMovedLight(job.subject->scene, ++moves_));
-        const FrameTime time = frameTime(pipeline.run(request), renderer_.context().software());
-        if (i >= warmUp) ms.push_back(time.whole), lightMs.push_back(time.light);
+        return frameTime(pipeline.run(request), renderer_.context().software());
+    };
+    constexpr double kPatienceMs = 500.0;   // slow frames need fewer: what warming up saves is little of them
+    double spent = 0.0;
+    for (int i = 0; i < warmUp && spent < kPatienceMs; ++i) spent += nextFrame().whole;
+    std::vector<double> ms, lightMs;
+    spent = 0.0;
+    for (int i = 0; i < settings_.frames && spent < kPatienceMs; ++i) {
+        const FrameTime frame = nextFrame();
+        ms.push_back(frame.whole), lightMs.push_back(frame.light);
+        spent += frame.whole;
     }
     journal_.add(key(job, "time"), {{"ms", ms}, {"light_ms", lightMs}});
 }
@@ -83,7 +91,8 @@ std::vector<Outcome> Study::run(const std::string& what, const std::vector<Job>&
 }
 
 std::uint32_t Study::photonsOf(const Subject& subject, const Configuration& configuration) {
-    return renderer_.pipeline(configuration, subject.fingerprint).run(mapRequest(subject.scene, configuration)).stats.photons;
+    render::Pipeline& scratch = renderer_.pipeline({}, subject.fingerprint);
+    return scratch.run(mapRequest(subject.scene, configuration)).stats.photons;
 }
 
 Configuration Study::withPhotons(const Subject& subject, Configuration configuration, std::uint32_t photons) {

@@ -13,8 +13,8 @@ namespace caustream::bench {
 
 struct StudySettings {
     std::string gpu = "auto";
-    int rounds = 5;                // turns that every configuration gets
-    int frames = 3;                // counted in each, after one that is not
+    int rounds = 4;                // turns that every configuration gets
+    int frames = 3;                // most counted in each, after one that is not
     TruthSettings truth;
 };
 

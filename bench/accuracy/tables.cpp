@@ -36,6 +36,8 @@ std::string format(const char* pattern, ...) {
     return text;
 }
 
+std::string claim(bool met, const std::string& what) { return format("- %s: %s\n", met ? "met" : "NOT met", what.c_str()); }
+
 std::string table(const std::vector<std::vector<std::string>>& rows) {
     std::vector<std::size_t> widths(rows.front().size());
     for (const auto& row : rows) {

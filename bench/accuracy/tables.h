@@ -25,6 +25,9 @@ std::string bestLine(const Results& results);
 std::string csv(const std::vector<Results>& all);
 nlohmann::json json(const std::vector<Results>& all);
 
+// "- met: sphere: ..." or "- NOT met: ...", a line.
+std::string claim(bool met, const std::string& what);
+
 // printf to a string.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 // Throws Error when it cannot be written.

@@ -14,7 +14,7 @@
 namespace caustream::bench {
 
 struct TruthSettings {
-    std::uint64_t photons = 1u << 22;   // for the spectrum; a quarter of them for the bands
+    std::uint64_t photons = 1u << 21;   // for the spectrum; a quarter of them for the bands
     int cells = 256;               // a side, of windows that are a view
     int pictureSize = 512;
     std::string cacheFolder;

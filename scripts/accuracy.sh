@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Measures everything that docs/accuracy.md says and writes it there: tables between its markers, plots beside it.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset="${PRESET:-release}"
+out="build/accuracy"
+doc="docs/accuracy.md"
+
+help() {
+    cat <<'TEXT'
+scripts/accuracy.sh [--quick] [--fresh] [PART...]
+    Builds caustream-bench, measures, and rewrites the blocks of docs/accuracy.md (<!-- begin:PART --> ... <!-- end:PART -->)
+    and the plots in docs/images/accuracy. About a quarter of an hour on two quiet cores; the references that it traces are
+    kept for the next time. What was cut short goes on where it ended.
+
+    PART: error-vs-time, vs-thesis, estimate, stability, omissions; all of them unless some are named.
+    --quick  fewer configurations, photons and cases, to try; writes to build/accuracy only
+    --fresh  measures again what build/accuracy holds already
+TEXT
+}
+
+quick=()
+fresh=()
+parts=()
+while [[ $# -gt 0 ]]; do
+    case "$1" in
+        -h | --help)
+            help
+            exit 0
+            ;;
+        --quick) quick=(--quick) ;;
+        --fresh) fresh=(--fresh) ;;
+        error-vs-time | vs-thesis | estimate | stability | omissions) parts+=("$1") ;;
+        *)
+            echo "accuracy: no such part or option: $1 (--help lists them)" >&2
+            exit 1
+            ;;
+    esac
+    shift
+done
+[[ ${#parts[@]} -gt 0 ]] || parts=(error-vs-time vs-thesis estimate stability omissions)
+[[ ${#quick[@]} -eq 0 ]] || out="build/accuracy-quick"
+
+scripts/setup.sh
+cmake --preset "$preset" >/dev/null
+cmake --build --preset "$preset" --target caustream-bench >&2
+bench="build/$preset/bin/caustream-bench"
+mkdir -p "$out" docs/images/accuracy
+
+# replace PART: the block's lines in the document become those of $out/PART.md.
+replace() {
+    grep -q "<!-- begin:$1 -->" "$doc" && grep -q "<!-- end:$1 -->" "$doc" || {
+        echo "accuracy: $doc has no block \"$1\"" >&2
+        exit 1
+    }
+    awk -v part="$1" -v file="$out/$1.md" '
+        $0 == "<!-- begin:" part " -->" { print; while ((getline line < file) > 0) print line; inside = 1 }
+        $0 == "<!-- end:" part " -->" { inside = 0 }
+        !inside { print }' "$doc" >"$out/accuracy.md"
+    cp "$out/accuracy.md" "$doc"
+}
+
+for part in "${parts[@]}"; do
+    echo "== $part" >&2
+    case "$part" in
+        error-vs-time) "$bench" error-vs-time --out "$out" "${quick[@]}" "${fresh[@]}" ;;
+        vs-thesis) "$bench" error-vs-time --vs-thesis --out "$out/vs-thesis" "${quick[@]}" "${fresh[@]}" && cp "$out/vs-thesis/vs-thesis.md" "$out" ;;
+        *) "$bench" "$part" --markdown "$out/$part.md" ;;
+    esac
+    [[ ${#quick[@]} -eq 0 ]] || continue
+    replace "$part"
+    [[ "$part" != error-vs-time ]] || cp "$out"/*.svg docs/images/accuracy/
+done
