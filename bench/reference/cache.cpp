@@ -81,7 +81,7 @@ class Reader {
         if constexpr (std::is_trivially_copyable_v<T>) {
             if (count > bytes_.size() / sizeof(T) || !take(count * sizeof(T))) return ok_ = false, *this;
             values.resize(count);
-            std::memcpy(values.data(), bytes_.data() + at_ - count * sizeof(T), count * sizeof(T));
+            if (count > 0) std::memcpy(values.data(), bytes_.data() + at_ - count * sizeof(T), count * sizeof(T));
         } else {
             for (std::size_t i = 0; i < count && ok_; ++i) *this >> values.emplace_back();
         }
