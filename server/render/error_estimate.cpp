@@ -16,6 +16,9 @@ constexpr double kHalves = 1.5;
 // what would change if it were spread a little more: of the four neighbours' mean, .45 is left with 64 times the photons.
 constexpr double kBlur = 0.45;
 
+// Of what texels as wide as the finest level's blur, the rows tell one direction, and 14 of 16 texels are compared.
+constexpr double kGrain = 0.5;
+
 constexpr double kMost = 2.0;
 
 }  // namespace
@@ -24,6 +27,7 @@ ErrorEstimate estimateError(const MapDifferences& map) {
     ErrorEstimate error;
     error.sampling = std::min(std::hypot(kHalves * map.halves, kBlur * map.roughness), kMost);
     error.spectral = std::min(map.spectralStep, kMost);
+    error.resolution = std::min(kGrain * map.grain, kMost);
     error.total = std::min(std::hypot(error.sampling, error.spectral), kMost);
     return error;
 }

@@ -8,6 +8,7 @@ namespace caustream::render {
 struct MapDifferences {
     double halves = 0.0;        // sum over texels of |even - odd|, the luminance of the two halves of the photons
     double roughness = 0.0;     // sum over the pyramid's coarser levels and their texels of |texel - mean of its neighbours|
+    double grain = 0.0;         // the same of the finest level, along its rows
     double spectralStep = 0.0;  // what it would change by, were each wavelength spread over the stretch it stands for
 };
 

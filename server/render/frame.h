@@ -25,6 +25,7 @@ struct Transport {
     std::vector<double> wavelengthsNm;      // exact wavelengths, ascending, instead of the uniform ones
     int photonGrid = 0;                     // photons per side of each caster's emission view; 0: chosen for the GPU
     int mapSize = 512;                      // texels per side of the spectral map
+    int backLayer = 0;                      // texels per side of the casters' back layers; 0: chosen for the photon grid
     int backSteps = 4;                      // Newton steps to the exit point, 1..16
     int receiverSteps = 6;                  // bracketed secant steps to the receiver, 1..32
     bool gapFill = false;                   // the thesis's gap filling
@@ -80,7 +81,8 @@ struct EnergyLedger {
 struct ErrorEstimate {
     double sampling = 0.0;                  // too few photons: from two interleaved halves of them
     double spectral = 0.0;                  // too few wavelengths
-    double total = 0.0;
+    double total = 0.0;                     // of both
+    double resolution = 0.0;                // what texels this wide blur: not an error of the texels, not part of total
 };
 
 // How many searches ended how near to what they looked for, by what their last step still changed over what may remain:

@@ -116,7 +116,7 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
                             double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out) {
     const int grid = in.transport.photonGrid;
     const glm::ivec2 front = gridSize(emitter.emission, grid);
-    const int back = grid > 512 ? 512 : 256;
+    const int back = in.transport.backLayer > 0 ? in.transport.backLayer : grid > 512 ? 512 : 256;
     const bool bands = in.bands;
     const GLuint cookie = in.light.cookie >= 0 ? in.gpu.texture(in.light.cookie) : 0;
     const float radius = emitter.caster->bounds.radius();
@@ -179,7 +179,7 @@ void LightSide::judgeSpectrum(const Inputs& in, const std::vector<LitCaster>& em
     if (all.flux <= 0.0f) return;
     all.ends /= all.flux, all.bend /= all.flux;
     const int size = in.transport.mapSize;
-    const glm::vec2 step = spectralStep(all, static_cast<int>(out.wavelengths.nm.size()), in.transport.wavelengths == kContinuous, size);
+    const glm::vec2 step = spectralStep(all, static_cast<int>(out.wavelengths.nm.size()), in.plan.continuous, size);
     // All the light in one texel of the widest view still fits 32 bits.
     const double perTexel = kFixedRange / 8.0 / totalFlux_ * texelExtent(out.mapView, size, size / 2 * (size + 1));
     spectralStep_.run({out.map, step, perTexel}, ledger_);
@@ -318,6 +318,7 @@ void LightSide::collect(LightMaps& out) const {
         if (deposited > 0.0) {
             out.error = estimateError({.halves = rows[layout::kLedgerHalves] / deposited,
                                        .roughness = kRoughnessUnit * rows[layout::kLedgerRoughness] / deposited,
+                                       .grain = kRoughnessUnit * rows[layout::kLedgerGrain] / deposited,
                                        .spectralStep = rows[layout::kLedgerStep] / std::max(rows[layout::kLedgerStepOf], 1.0)});
         }
     }

@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "gl/context.h"
+#include "render/choose_transport.h"
 #include "render/key_light.h"
 #include "render/light_side.h"
 #include "render/light_uniforms.h"
@@ -32,6 +33,7 @@ namespace caustream::render {
 namespace {
 
 constexpr std::size_t kMostLightMaps = 4;    // poses kept, about 10 MB each at 512^2
+constexpr std::size_t kMostChoices = 16;     // of budgets and targets, remembered so that they do not flicker
 constexpr float kAutoKey = 0.8f;             // picture value of a white receiver that faces the light at the caustic
 
 // Names of Target::Pass and what each shows.
@@ -76,7 +78,7 @@ std::string lightKey(const Request& request, const scene::Light& light, int phot
     for (double nm = optics::kBandMinNm; nm <= optics::kBandMaxNm; nm += 10.0) key.add(optics::relativePower(light.spectrum, nm));
     if (const auto* lines = std::get_if<optics::Lines>(&light.spectrum)) key.addAll(lines->nm);
     const Transport& t = request.transport;
-    key.add(t.mode), key.add(t.hierarchyLevels), key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.mapSize), key.add(t.backSteps);
+    key.add(t.mode), key.add(t.hierarchyLevels), key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.backLayer), key.add(t.mapSize), key.add(t.backSteps);
     key.add(t.receiverSteps), key.add(t.gapFill), key.add(t.filter), key.add(t.forceDispersive), key.add(request.wavelengthBands);
     key.add(request.observer);
     return key.bytes();
@@ -124,6 +126,13 @@ struct Pipeline::Impl {
     std::vector<std::unique_ptr<SceneEntry>> scenes;
     std::list<LightEntry> lights;              // newest first
     gl::Texture color, depth, front, back, output;
+    Calibration calibration;
+    struct Chosen {
+        const void* scene;
+        double budgetMs, targetError;
+        Configuration configuration;
+    };
+    std::list<Chosen> chosen;                  // newest first: what each scene and wish had last
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
         : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), receivers(s), casters(s), refraction(s), thesisRefraction(s), present(s) {
@@ -131,6 +140,7 @@ struct Pipeline::Impl {
     }
 
     SceneEntry& sceneEntry(const scene::Scene& scene);
+    Request withChoice(const Request& request, const PlanFacts& facts, std::string& sentence);
     LightMaps& lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport, RenderPlan& plan, PlanFacts facts);
     void cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
                     const LightMaps& maps, const RenderPlan& plan, int width, int height);
@@ -174,6 +184,37 @@ SceneEntry& Pipeline::Impl::sceneEntry(const scene::Scene& scene) {
         if (entry->geometry == scene.geometry) return *entry;
     }
     return *scenes.emplace_back(std::make_unique<SceneEntry>(scene));
+}
+
+// The request with the transport that meets its budget or target error, if it has one.
+Request Pipeline::Impl::withChoice(const Request& request, const PlanFacts& facts, std::string& sentence) {
+    Transport wanted = request.transport;
+    if (wanted.budgetMs <= 0.0 && wanted.targetError <= 0.0) return request;
+    if (wanted.mode != Mode::Refined) {
+        sentence = "nothing: the published algorithm has no estimate to choose by";
+        return request;
+    }
+    const void* scene = request.scene->geometry.get();
+    const bool listed = !wanted.wavelengthsNm.empty(), keep = listed || request.wavelengthBands || facts.lines;
+    if (listed) wanted.wavelengths = static_cast<int>(wanted.wavelengthsNm.size());
+    const std::vector<Configuration> offers = paretoFront(
+        calibration.configurations(scene, wanted, facts.dispersive, {.wavelengths = keep, .mapSize = request.target == Target::Spectral}));
+    auto last = std::find_if(chosen.begin(), chosen.end(), [&](const Chosen& c) {
+        return c.scene == scene && c.budgetMs == wanted.budgetMs && c.targetError == wanted.targetError;
+    });
+    const Choice choice = choose(offers, wanted, last == chosen.end() ? std::nullopt : std::optional(last->configuration));
+    if (last == chosen.end()) last = chosen.insert(chosen.begin(), {scene, wanted.budgetMs, wanted.targetError, {}});
+    last->configuration = choice.configuration;
+    if (chosen.size() > kMostChoices) chosen.pop_back();
+
+    sentence = choice.sentence;
+    Request out = request;
+    Transport& transport = out.transport;
+    transport.budgetMs = transport.targetError = 0.0;
+    transport.photonGrid = choice.configuration.photonGrid, transport.mapSize = choice.configuration.mapSize;
+    transport.backSteps = choice.configuration.backSteps;
+    if (!keep) transport.wavelengths = choice.configuration.wavelengths;
+    return out;
 }
 
 LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport,
@@ -341,32 +382,34 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
         run(request);
     }
     collect();
+    impl_->calibration = {};   // what first frames take says nothing
     report(4);
 }
 
-Frame Pipeline::run(const Request& request) {
+Frame Pipeline::run(const Request& asked) {
     Impl& impl = *impl_;
     const auto start = std::chrono::steady_clock::now();
-    if (request.target == Target::Pass && std::find(kPassNames.begin(), kPassNames.end(), request.pass) == kPassNames.end()) {
-        throw Error("no pass \"" + request.pass + "\" to show");
+    if (asked.target == Target::Pass && std::find(kPassNames.begin(), kPassNames.end(), asked.pass) == kPassNames.end()) {
+        throw Error("no pass \"" + asked.pass + "\" to show");
     }
     impl.timer.beginFrame();
-    const scene::Scene& scene = *request.scene;
+    const scene::Scene& scene = *asked.scene;
     SceneEntry& entry = impl.sceneEntry(scene);
+    const View view = cameraView(asked.camera, scene, asked.width, asked.height);
+    const int key = keyLight(scene);
+    PlanFacts facts = gatherFacts(asked, scene.lights[static_cast<std::size_t>(key)], view);
+    facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
+    Frame frame;
+    const Request request = impl.withChoice(asked, facts, frame.stats.choice);
     Transport transport = request.transport;
     if (transport.photonGrid == 0) {
         transport.photonGrid = transport.mode == Mode::Thesis ? kThesisGrid : impl.context.software() ? 256 : 1024;
     }
 
     // Light's side, from the cache where nothing changed
-    const View view = cameraView(request.camera, scene, request.width, request.height);
-    const int key = keyLight(scene);
     RenderPlan plan;
-    PlanFacts facts = gatherFacts(request, scene.lights[static_cast<std::size_t>(key)], view);
-    facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
     LightMaps& maps = impl.lightMaps(request, entry, key, transport, plan, facts);
     if (request.spectralMap && maps.hasMap) impl.replaceMap(maps, *request.spectralMap);
-    Frame frame;
     if (scene.lights.size() > 1) {
         frame.stats.warnings.push_back("several lights: \"" + scene.lights[static_cast<std::size_t>(key)].name +
                                        "\", the strongest, throws the caustic; the others light directly");
@@ -399,6 +442,7 @@ Frame Pipeline::run(const Request& request) {
     frame.lightMatrix = maps.mapView.worldToClip();
     frame.mapHash = maps.mapHash;
     for (const auto& row : impl.timer.rows()) frame.stats.stages.push_back({row.name, row.ms});
+    const bool traced = plan.runs("photon_trace");
     frame.stats.plan = std::move(plan.entries);
     frame.stats.ledger = maps.ledger;
     if (request.countResiduals) frame.stats.residuals = maps.residuals;
@@ -406,6 +450,11 @@ Frame Pipeline::run(const Request& request) {
     frame.stats.photons = maps.photons;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
     frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (!request.still && !request.wavelengthBands && !request.countResiduals && transport.mode == Mode::Refined) {
+        transport.wavelengths = plan.continuous ? kContinuous : plan.wavelengths;
+        impl.calibration.learnCost(transport, frame.stats, traced);
+        if (traced && maps.error) impl.calibration.learnError(scene.geometry.get(), transport, *maps.error, maps.photons);
+    }
     if (glGetError() == GL_OUT_OF_MEMORY) throw Error("the GPU is out of memory; ask for a smaller picture, map or photon grid");
     return frame;
 }
@@ -414,7 +463,7 @@ void Pipeline::collect() {
     // Whoever renders a scene holds its geometry; an entry whose three parts alone hold it is no longer wanted. Its light
     // maps go too: their keys name the geometry by its address, which may come again.
     const auto unused = [](const auto& entry) { return entry->geometry.use_count() <= 3; };
-    if (std::erase_if(impl_->scenes, unused) > 0) impl_->lights.clear();
+    if (std::erase_if(impl_->scenes, unused) > 0) impl_->lights.clear(), impl_->chosen.clear();
 }
 
 std::span<const std::string> passNames() { return kPassNames; }

@@ -2,7 +2,8 @@
 // The finest (FINEST 1) becomes concentration (1 = as bright as direct light), linear BT.709 with the light's own colour
 // divided out, and books what was deposited. Spreading is a partition of unity: no light is lost or made.
 // The inner map (JUDGED 1) also books what tells its error: how much the halves of the photons differ at the finest level,
-// and how rough each coarser one is, which is what its width has blurred.
+// how rough each coarser one is, which is what its width
+// has blurred, and how rough the finest along its rows.
 #include "shared/layout.h"
 #include "common/view.glsl"
 
@@ -39,7 +40,8 @@ float roughness(ivec2 texel) {
 void main() {
     ivec2 size = imageSize(u_out);
     int first = int(gl_GlobalInvocationID.x) * kScanTexels;
-    float deposited = 0.0, halves = 0.0, rough = 0.0;
+    float deposited = 0.0, halves = 0.0, rough = 0.0, grain = 0.0;
+    vec2 passed = vec2(0.0);         // Y of the two texels before in the row
     for (int i = first; i < min(first + kScanTexels, size.x * size.y); ++i) {
         ivec2 texel = ivec2(i % size.x, i / size.x);
         vec2 uv = (vec2(texel) + 0.5) / vec2(size);
@@ -52,6 +54,8 @@ void main() {
 #if FINEST
         deposited += sum.y;
         halves += abs(sum.w);
+        if (i >= first + 2 && texel.x >= 2) grain += abs(passed.y - 0.5 * (passed.x + sum.y));
+        passed = vec2(passed.y, sum.y);
         vec3 rgb = u_xyzToRgb * sum.xyz * (u_fluxPerFixed / texelExtent(u_view, uv, 1.0 / vec2(size)));
         imageStore(u_out, texel, vec4(rgb, texelFetch(u_receivers, texel, 0).x));
 #else
@@ -62,6 +66,7 @@ void main() {
     book(kLedgerDeposited, deposited);
 #if JUDGED
     book(kLedgerHalves, halves);
+    book(kLedgerGrain, grain * kRoughnessUnit);
 #endif
 #endif
 #if JUDGED

@@ -41,6 +41,7 @@ LAYOUT_CONST kLedgerHalves = 9;        // what the two halves of the photons dif
 LAYOUT_CONST kLedgerRoughness = 10;    // what texels of the pyramid's coarser levels differ from their neighbours by, / 16
 LAYOUT_CONST kLedgerStep = 11;         // what the map would change by, were each wavelength spread over its stretch
 LAYOUT_CONST kLedgerStepOf = 12;       // of this luminance
+LAYOUT_CONST kLedgerGrain = 13;        // what texels of the finest level differ from their neighbours in the row by, / 16
 LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
 LAYOUT_CONST kLedgerBanks = 32;
 

@@ -68,6 +68,30 @@ TEST_F(Frames, CompositeArrivesAsAJpegWithAPictureInIt) {
     EXPECT_GT(high - low, 60) << "there is something to see in it";
 }
 
+TEST_F(Frames, StatisticsEstimateTheErrorAndSayWhatABudgetChose) {
+    RawClient viewer(server_.port());
+    viewer.hello();
+    viewer.update(kSmall);
+    viewer.json({{"op", "frame.request"}, {"id", 1000}});
+    const auto plain = viewer.textOf("stats");
+    ASSERT_TRUE(plain && plain->contains("error"));
+    EXPECT_GT((*plain)["error"]["sampling"], 0.0);
+    EXPECT_GE((*plain)["error"]["total"], (*plain)["error"]["sampling"]);
+    EXPECT_TRUE(!plain->contains("choice") || (*plain)["choice"] == "");
+
+    viewer.update({{"transport", {{"budget_ms", 1}}}});
+    viewer.json({{"op", "frame.request"}, {"id", 1001}});
+    const auto hurried = viewer.textOf("stats");
+    ASSERT_TRUE(hurried && hurried->contains("choice"));
+    EXPECT_THAT((*hurried)["choice"].get<std::string>(), testing::HasSubstr("nothing keeps within 1 ms"));
+
+    viewer.update({{"transport", {{"budget_ms", 0}, {"target_error", 0.5}}}});
+    viewer.json({{"op", "frame.request"}, {"id", 1002}});
+    const auto patient = viewer.textOf("stats");
+    ASSERT_TRUE(patient && patient->contains("choice"));
+    EXPECT_THAT((*patient)["choice"].get<std::string>(), testing::HasSubstr("the fastest that reaches 50%"));
+}
+
 TEST_F(Frames, SameStateGivesTheSameHash) {
     RawClient viewer(server_.port());
     viewer.hello();
