@@ -161,9 +161,28 @@ void drawGlass(Model& model, Editor& editor) {
 
 void drawTransport(Model& model, Editor& editor) {
     protocol::TransportState& transport = model.transport;
+    using protocol::TransportMode;
+    constexpr std::pair<const char*, TransportMode> kModes[] = {{"refined", TransportMode::Refined},
+                                                                {"thesis", TransportMode::Thesis}};
+    const auto changed = [&] {
+        // The published algorithm has colours for 1, 7 or 21 wavelengths.
+        int& count = transport.wavelengths;
+        const bool thesis = transport.mode == TransportMode::Thesis;
+        if (thesis && count != protocol::kContinuous) count = count < 4 ? 1 : count < 14 ? 7 : 21;
+        const Json wavelengths = count == protocol::kContinuous ? Json("continuous") : Json(count);
+        editor.change({{"transport", {{"mode", kModes[thesis].first}, {"wavelengths", wavelengths}}}});
+    };
+    label("Method");
+    if (ImGui::BeginCombo("##mode", kModes[transport.mode == TransportMode::Thesis].first)) {
+        for (const auto& [name, mode] : kModes) {
+            if (!ImGui::Selectable(name, mode == transport.mode)) continue;
+            transport.mode = mode;
+            changed();
+        }
+        ImGui::EndCombo();
+    }
     label("Wavelengths");
-    if (ImGui::SliderInt("##wavelengths", &transport.wavelengths, 1, 64, "%d", ImGuiSliderFlags_AlwaysClamp))
-        editor.change({{"transport", {{"wavelengths", transport.wavelengths}}}});
+    if (ImGui::SliderInt("##wavelengths", &transport.wavelengths, 1, 64, "%d", ImGuiSliderFlags_AlwaysClamp)) changed();
 
     constexpr int kGrids[] = {0, 128, 256, 512, 1024, 2048}, kMaps[] = {256, 512, 1024, 2048};
     const auto sizes = [&](const char* title, const char* id, const char* field, int& value, auto& list) {

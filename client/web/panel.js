@@ -49,11 +49,25 @@ export class Panel {
         on('preset', 'change', (value) => value && this.disperse_(JSON.parse(value)));
         on('cauchy-a', 'input', (value) => this.cauchy_(Number(value), this.cauchyNow_()[1]));
         on('cauchy-b', 'input', (value) => this.cauchy_(this.cauchyNow_()[0], sliderToB(Number(value))));
-        on('wavelengths', 'input', (value) => change({ transport: { wavelengths: Number(value) } }));
+        on('wavelengths', 'input', (value) => change({ transport: { wavelengths: this.countFor_(this.mode_(), Number(value)) } }));
+        on('mode', 'change', (mode) => {
+            const now = this.session_.shown.transport?.wavelengths ?? 7;
+            const wavelengths = Array.isArray(now) ? now.length : now;
+            change({ transport: { mode, wavelengths: wavelengths === 'continuous' ? wavelengths : this.countFor_(mode, wavelengths) } });
+        });
         on('auto-exposure', 'change', (_, box) => this.expose_(box.checked ? null : this.exposureEv_));
         on('exposure', 'input', (value) => this.expose_(Number(value)));
         on('photon-grid', 'change', (value) => change({ transport: { photon_grid: Number(value) } }));
         on('map-size', 'change', (value) => change({ transport: { map_size: Number(value) } }));
+    }
+
+    mode_() {
+        return this.session_.shown.transport?.mode ?? 'refined';
+    }
+
+    // The published algorithm has colours for 1, 7 or 21 wavelengths.
+    countFor_(mode, count) {
+        return mode !== 'thesis' ? count : count < 4 ? 1 : count < 14 ? 7 : 21;
     }
 
     chooseTarget_(target) {
@@ -132,6 +146,7 @@ export class Panel {
         const transport = shown.transport ?? {};
         const count = Array.isArray(transport.wavelengths) ? transport.wavelengths.length : transport.wavelengths ?? 7;
         show('wavelengths', count, String(count));
+        fill(byId('mode'), [['refined', 'Refined'], ['thesis', 'As published (2012)']], this.mode_());
         const withOwn = (sizes, own) => [...new Set([...sizes, own])].sort((a, b) => a - b);
         const grid = transport.photon_grid ?? 0, mapSize = transport.map_size ?? 512;
         fill(byId('photon-grid'), withOwn(kGrids, grid).map((n) => [n, n ? `${n} × ${n}` : 'Automatic']), grid);
