@@ -39,7 +39,7 @@ Choice choose(std::span<const Configuration> front, const Transport& wanted, con
 class Recent {
    public:
     void add(double value);
-    bool empty() const { return values_.empty(); }
+    std::size_t size() const { return values_.size(); }
     double medianOr(double fallback) const;
 
    private:
@@ -67,8 +67,10 @@ class Calibration {
         const void* scene = nullptr;
         ErrorEstimate error;
         double photons = 0.0;
-        int photonGrid = 0, mapSize = 0, wavelengths = 1;
+        int photonGrid = 0, mapSize = 0;
         double exponent = 0.0;         // of photons a texel
+        // Spectral error of one exact wavelength, of which more have a share, and of a continuous spectrum.
+        std::optional<double> oneWavelength, continuous;
     };
     double photonNs(int wavelengths) const;
     Configuration expected(Configuration configuration, const SceneError& known) const;
