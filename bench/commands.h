@@ -8,6 +8,7 @@ namespace caustream::bench {
 void addErrorVsTime(CLI::App& app);   // error and time of many configurations
 void addEstimate(CLI::App& app);      // the error estimate beside the true error
 void addFrame(CLI::App& app);         // render times in this process
+void addOmissions(CLI::App& app);     // what leaving out saves
 void addReference(CLI::App& app);     // exact maps from the CPU
 void addStream(CLI::App& app);        // what the socket adds
 

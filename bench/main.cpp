@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
     addErrorVsTime(app);
     addEstimate(app);
     addFrame(app);
+    addOmissions(app);
     addReference(app);
     addStream(app);
     try {

@@ -89,18 +89,37 @@ std::vector<SpectrumStep> spectrumOf(const optics::WavelengthSet& set, const sce
     return steps;
 }
 
+// A receiver that stands before nothing, seen from the light.
+bool shadesNothing(const LightSide::Inputs& in, const scene::Object& object) {
+    return !in.scene.materials[static_cast<std::size_t>(object.material)].caster && !in.enclosure.shades(object, in.light) &&
+           !in.forced.has(Omission::Walls);
+}
+
 }  // namespace
+
+GLuint LightSide::white() {
+    const std::uint8_t texel[4] = {255, 255, 255, 255};
+    if (white_.ensure(1, 1, GL_RGBA8, "white cookie")) glTextureSubImage2D(white_.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, texel);
+    return white_.get();
+}
 
 LightFit LightSide::fit(const Inputs& in) {
     LightFit fit;
     const optics::WavelengthSet set = wavelengthsOf(in);
+    const bool unlitToo = in.forced.has(Omission::UnlitGlass);
     std::vector<Landing> landings;
     std::vector<double> coarse = {set.nm.front()};
-    if (set.nm.size() > 1) coarse.push_back(set.nm.back());
+    // Where colours go the same way, one is enough: the fit is then that of a single wavelength.
+    const auto& materials = in.scene.materials;
+    const bool spreads = std::any_of(materials.begin(), materials.end(), [&](const scene::Material& material) {
+        return refracts(material, in.scene.outsideIndex) && optics::isDispersive(material.dispersion);
+    });
+    if (set.nm.size() > 1 && spreads) coarse.push_back(set.nm.back());
     for (const scene::Object& object : in.scene.geometry->objects) {
         const scene::Material& material = in.scene.materials[static_cast<std::size_t>(object.material)];
         if (!refracts(material, in.scene.outsideIndex)) continue;
-        const auto emission = emissionView(in.scene, in.light, object);
+        auto emission = emissionView(in.scene, in.light, object);
+        if (!emission && unlitToo) emission = backView(in.scene, in.light, object);
         if (!emission) continue;
         const std::vector<Landing> own = in.tracer.trace(in.scene, in.light, object, *emission, kCoarseGrid, coarse);
         for (const Landing& landing : own) {
@@ -118,7 +137,7 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
     const glm::ivec2 front = gridSize(emitter.emission, grid);
     const int back = in.transport.backLayer > 0 ? in.transport.backLayer : grid > 512 ? 512 : 256;
     const bool bands = in.bands;
-    const GLuint cookie = in.light.cookie >= 0 ? in.gpu.texture(in.light.cookie) : 0;
+    const GLuint cookie = in.light.cookie >= 0 ? in.gpu.texture(in.light.cookie) : in.forced.has(Omission::Cookie) ? white() : 0;
     const float radius = emitter.caster->bounds.radius();
 
     timer.stage("caster_layers", [&] {
@@ -126,7 +145,7 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
         const auto others = [&] {
             in.gpu.drawWhere([&](const scene::Object& object) {
                 const scene::Material& material = in.scene.materials[static_cast<std::size_t>(object.material)];
-                return &object != emitter.caster && (!material.caster || refracts(material, in.scene.outsideIndex));
+                return &object != emitter.caster && !shadesNothing(in, object) && (!material.caster || refracts(material, in.scene.outsideIndex));
             });
         };
         casterLayers_.run({in.gpu, *emitter.caster, emitter.emission, front.x, front.y, others}, CasterLayers::Side::Front, front_);
@@ -266,7 +285,8 @@ void LightSide::run(const Inputs& in, const LightFit& fit, gl::StageTimer& timer
     if (out.hasShadow) {
         out.shadowView = shadowView(in.scene, in.light);
         timer.stage("receiver_depth", [&] {
-            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, kShadowSize, true, in.scene.outsideIndex}, out.shadow);
+            receiverDepth_.run({in.gpu, in.scene.materials, out.shadowView, kShadowSize, true, in.scene.outsideIndex,
+                                [&](const scene::Object& object) { return shadesNothing(in, object); }}, out.shadow);
         });
     }
     if (!in.plan.runs("photon_trace")) return;
@@ -312,6 +332,7 @@ void LightSide::collect(LightMaps& out) const {
     out.ledger.rejected = rows[layout::kLedgerRejected] * flux;
     out.ledger.leftMap = rows[layout::kLedgerLeftMap] * flux;
     out.ledger.noReceiver = rows[layout::kLedgerNoReceiver] * flux;
+    out.outerEmpty = out.bands.empty() && rows[layout::kLedgerOuter] == 0.0;
     if (out.bands.empty()) {
         const double deposited = rows[layout::kLedgerDeposited];
         out.ledger.deposited = deposited * flux;

@@ -10,6 +10,7 @@
 #include "gl/stage_timer.h"
 #include "optics/colour.h"
 #include "render/coarse_trace.h"
+#include "render/enclosure.h"
 #include "render/frame.h"
 #include "render/gpu_scene.h"
 #include "render/light_views.h"
@@ -28,6 +29,7 @@ namespace caustream::render {
 struct LightMaps {
     bool hasShadow = false, hasMap = false;
     int castersLit = 0;                    // casters that the light reaches
+    bool outerEmpty = false;               // nothing landed in the outer map
     bool lands = false;                    // some of its light lands on a receiver
     View shadowView, mapView, outerView;
     gl::Texture shadow;                    // DEPTH_COMPONENT32F
@@ -64,9 +66,11 @@ class LightSide {
         const scene::Light& light;         // the key light
         const Transport& transport;        // photonGrid resolved, > 0
         const RenderPlan& plan;
+        const Enclosure& enclosure;
         bool bands = false, hash = false;
         bool countResiduals = false;
         optics::Observer observer = optics::Observer::Cie1931;
+        Omissions forced{};                // that are done all the same
     };
 
     explicit LightSide(gl::ShaderLibrary& shaders)
@@ -84,6 +88,7 @@ class LightSide {
     const gl::Texture& receivers() const { return receivers_; }
 
    private:
+    GLuint white();                        // a cookie that changes nothing
     void traceCaster(const Inputs& in, const LitCaster& emitter, std::size_t firstWavelength, std::size_t count,
                      double fixedPerFlux, gl::StageTimer& timer, const LightMaps& out);
     void traceBands(const Inputs& in, const std::vector<LitCaster>& emitters, gl::StageTimer& timer, LightMaps& out);
@@ -96,7 +101,7 @@ class LightSide {
     PhotonTrace photonTrace_;
     MapResolve mapResolve_;
     SpectralStep spectralStep_;
-    gl::Texture front_, back_, receivers_, outerReceivers_;
+    gl::Texture front_, back_, receivers_, outerReceivers_, white_;
     gl::Buffer list_, map_, ledger_, residuals_;
     int batches_ = 1;                      // of wavelengths, in each of which every photon is listed
     double totalFlux_ = 0.0;               // of the last run's emission views, an upper bound of all sums

@@ -20,6 +20,7 @@ struct Lighting {
     View shadowView;                     // depth texture, key light's
     GLuint shadowDepth = 0;              // DEPTH_COMPONENT32F, reversed
     bool hasMap = false;
+    bool hasOuterMap = true;             // some light landed there
     View mapView, outerView;             // of the inner and the coarse outer spectral map: one eye, one orientation
     GLuint map = 0, outerMap = 0;        // RGBA32F, rgb concentration (1 = as bright as direct light), uv of their view;
                                          // a layer value of the receiver there (1 unknown). Outer: what the inner misses

@@ -11,9 +11,9 @@ enum class Omission : unsigned {
     UnlitGlass,       // the light's passes where no light lands behind a caster
     Colours,          // wavelengths, where no glass disperses
     NoShadow,         // the shadow, where nothing throws one
+    Walls,            // receivers that can shade nothing, in the shadow and before the casters
     Absorption,       // where no glass absorbs
     OneWavelength,    // what joins one wavelength to the next, where there is one
-    Pyramid,          // the map's coarser levels, where it is not to be filtered
     Cookie,           // where the light has none
     Textures,         // where a receiver has none
     Gloss,            // highlights, further lights and cookies on receivers without
@@ -36,9 +36,9 @@ inline constexpr std::array<OmissionName, static_cast<std::size_t>(Omission::Cou
     {"unlit_glass", "the light's passes where no caster is lit"},
     {"colours", "all wavelengths but one where no glass disperses"},
     {"no_shadow", "the shadow where nothing throws one"},
+    {"walls", "walls that shade nothing, in the shadow"},
     {"absorption", "absorption in clear glass"},
     {"one_wavelength", "steps from wavelength to wavelength where there is one"},
-    {"pyramid", "the map's coarser levels without the filter"},
     {"cookie", "the cookie of a light that has none"},
     {"textures", "textures of receivers that have none"},
     {"gloss", "gloss and further lights where there are none"},

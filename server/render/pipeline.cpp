@@ -80,7 +80,7 @@ std::string lightKey(const Request& request, const scene::Light& light, int phot
     const Transport& t = request.transport;
     key.add(t.mode), key.add(t.hierarchyLevels), key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.backLayer), key.add(t.mapSize), key.add(t.backSteps);
     key.add(t.receiverSteps), key.add(t.gapFill), key.add(t.filter), key.add(t.forceDispersive), key.add(request.wavelengthBands);
-    key.add(request.observer);
+    key.add(request.observer), key.add(request.forced);
     return key.bytes();
 }
 
@@ -97,9 +97,10 @@ View cameraView(const scene::Camera& camera, const scene::Scene& scene, int widt
 }
 
 struct SceneEntry {
-    explicit SceneEntry(const scene::Scene& scene) : gpu(scene.geometry), tracer(scene), geometry(scene.geometry) {}
+    explicit SceneEntry(const scene::Scene& scene) : gpu(scene.geometry), tracer(scene), enclosure(*scene.geometry), geometry(scene.geometry) {}
     GpuScene gpu;
     CoarseTrace tracer;
+    Enclosure enclosure;
     std::shared_ptr<const scene::Geometry> geometry;
 };
 
@@ -226,7 +227,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     const bool shown = request.target == Target::Pass && (request.pass == "caster_layers" || request.pass == "receiver_depth");
     facts.lightCached = found != lights.end() && !shown && !request.countResiduals && !(request.still && found->maps.hasMap && found->maps.mapHash == 0);
     const auto conclude = [&](const LightMaps& maps) {
-        facts.castersLit = maps.castersLit, facts.lands = maps.lands;
+        facts.castersLit = maps.castersLit, facts.lands = maps.lands, facts.outerEmpty = maps.outerEmpty;
         const auto& objects = request.scene->geometry->objects;
         const auto receiversIn = [&](const View& view) {
             return static_cast<int>(std::count_if(objects.begin(), objects.end(), [&](const scene::Object& object) {
@@ -254,10 +255,11 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     lights.front().key.clear();   // not valid until it is done
     LightMaps& maps = lights.front().maps;
     maps.error.reset();
-    const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, request.wavelengthBands, request.still, request.countResiduals, request.observer};
+    const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, entry.enclosure, request.wavelengthBands, request.still, request.countResiduals, request.observer, request.forced};
     const bool thesis = transport.mode == Mode::Thesis;
     if (thesis) {
         thesisSide.run(in, timer, maps);
+        maps.outerEmpty = false;
     } else {
         const LightFit fit = LightSide::fit(in);
         facts.castersLit = maps.castersLit = static_cast<int>(fit.casters.size());
@@ -281,7 +283,7 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
     const char* const through = thesis ? "thesis_refraction" : "dispersive_refraction";
     if (plan.runs(shading)) {
         timer.stage(shading, [&] {
-            receivers.run({entry.gpu, scene.materials, lighting, view, width, height, thesis}, {color, depth});
+            receivers.run({entry.gpu, scene.materials, lighting, view, width, height, thesis, request.forced}, {color, depth});
         });
     }
     if (!plan.runs("camera_casters")) return;
@@ -301,8 +303,10 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
     for (const scene::Object* object : order) {
         PixelBox box;
         timer.stage("camera_casters", [&] {
-            const bool whole = thesis || (request.target == Target::Pass && request.pass == "camera_casters");
-            box = casters.run({entry.gpu, *object, view, width, height, whole}, {front, back});
+            const bool shown = request.target == Target::Pass && request.pass == "camera_casters";
+            const bool forced = request.forced.has(Omission::Box) || request.forced.has(Omission::UnseenGlass);
+            box = casters.run({entry.gpu, *object, view, width, height, thesis || shown || forced}, {front, back});
+            if (forced) box = {0, 0, width, height};
         });
         if (box.empty() || !refracted) continue;
         const scene::Material& material = scene.materials[static_cast<std::size_t>(object->material)];
@@ -318,8 +322,8 @@ void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const
         timer.stage(through, [&] {
             if (thesis) return thesisRefraction.run({view, front, back, depth, glass, lighting}, color);
             refraction.run({view, front, back, box, object->bounds, depth, glass, lighting},
-                           request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true}
-                                         : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false},
+                           request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true, request.forced}
+                                         : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false, request.forced},
                            color);
         });
     }
@@ -397,7 +401,7 @@ Frame Pipeline::run(const Request& asked) {
     SceneEntry& entry = impl.sceneEntry(scene);
     const View view = cameraView(asked.camera, scene, asked.width, asked.height);
     const int key = keyLight(scene);
-    PlanFacts facts = gatherFacts(asked, scene.lights[static_cast<std::size_t>(key)], view);
+    PlanFacts facts = gatherFacts(asked, scene.lights[static_cast<std::size_t>(key)], view, entry.enclosure);
     facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
     Frame frame;
     const Request request = impl.withChoice(asked, facts, frame.stats.choice);
@@ -422,7 +426,7 @@ Frame Pipeline::run(const Request& asked) {
     }
     Lighting lighting = makeLighting(scene, key, landing);
     lighting.hasShadow = maps.hasShadow, lighting.shadowView = maps.shadowView, lighting.shadowDepth = maps.shadow.get();
-    lighting.hasMap = maps.hasMap, lighting.mapView = maps.mapView, lighting.outerView = maps.outerView;
+    lighting.hasMap = maps.hasMap, lighting.hasOuterMap = !maps.outerEmpty, lighting.mapView = maps.mapView, lighting.outerView = maps.outerView;
     lighting.map = maps.map.get(), lighting.outerMap = maps.outerMap.get();
     const float unit = radianceUnit(lighting);
     const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey * std::exp2(scene.exposureBiasEv);

@@ -95,9 +95,11 @@ bool addLightSide(RenderPlan& plan, const PlanFacts& facts, const Request& reque
     if (facts.castersLit < facts.casters) unlit.push_back(counted(facts.casters - facts.castersLit, "caster") + " outside the light");
     if (!caustics) shadowOrMap.push_back("the maps' views: " + none);
     if (!plan.shadow) shadowOrMap.push_back("the shadow: nothing throws one");
+    const std::string walls = counted(facts.walls, "receiver") + " that can shade nothing";
+    if (plan.shadow && facts.walls > 0) shadowOrMap.push_back(walls + ", in the shadow");
+    if (facts.walls > 0) unlit.push_back(walls);
     const std::string cookie = "a cookie: the light has none";
     if (plan.wavelengths == 1) trace.push_back("steps between wavelengths: there is one");
-    if (!facts.absorbing) trace.push_back("absorption: no glass absorbs");
     if (!transport.filter) levels.push_back("the pyramid: the filter is off");
     if (!facts.cookie) trace.push_back(cookie);
     trace.insert(trace.end(), levels.begin(), levels.end());

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/enclosure.h"
 #include "render/frame.h"
 #include "render/view.h"
 
@@ -19,6 +20,7 @@ struct PlanFacts {
     bool absorbing = false;             // some caster that refracts absorbs
     int receivers = 0;
     bool shadowCasters = false;         // a receiver can stand between the light and another
+    int walls = 0;                      // receivers that cannot
     bool receiversTextured = false, receiversGlossy = false;
     int receiversInShadow = 0, receiversInMap = 0;   // that have a part in the shadow's view, in the map's
     bool outerEmpty = false;            // no light landed outside the inner map
@@ -49,7 +51,7 @@ RenderPlan makePlan(const PlanFacts& facts, const Request& request);
 void addCameraSide(RenderPlan& plan, const PlanFacts& facts, const Request& request, bool caustics);
 
 // What can be told of a request without drawing: all but what depends on where the light lands.
-PlanFacts gatherFacts(const Request& request, const scene::Light& key, const View& camera);
+PlanFacts gatherFacts(const Request& request, const scene::Light& key, const View& camera, const Enclosure& enclosure);
 
 // Whether light changes at the caster's surface or inside: index within 1e-6 of the outside's and no absorption is none.
 bool refracts(const scene::Material& material, double outsideIndex);

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 
 #include "render/passes/camera_casters.h"
 #include "render/passes/camera_receivers.h"
@@ -10,30 +8,6 @@ namespace caustream::render {
 
 namespace {
 
-// Whether all receivers lie in one plane: none can stand before another, nor before itself.
-bool inOnePlane(const scene::Scene& scene) {
-    const scene::Geometry& geometry = *scene.geometry;
-    const float tolerance = 1e-5f * geometry.bounds.radius();
-    glm::vec3 origin(0.0f), normal(0.0f);
-    bool plane = false;
-    for (const scene::Object& object : geometry.objects) {
-        if (scene.materials[static_cast<std::size_t>(object.material)].caster) continue;
-        for (std::uint32_t i = 0; i + 2 < object.indexCount; i += 3) {
-            const auto corner = [&](std::uint32_t k) { return geometry.vertices[geometry.indices[object.firstIndex + i + k]].position; };
-            const glm::vec3 a = corner(0), b = corner(1), c = corner(2);
-            if (!plane) {
-                const glm::vec3 across = glm::cross(b - a, c - a);
-                if (!(glm::dot(across, across) > 0.0f)) continue;
-                origin = a, normal = glm::normalize(across), plane = true;
-            }
-            for (const glm::vec3& point : {a, b, c}) {
-                if (std::abs(glm::dot(point - origin, normal)) > tolerance) return false;
-            }
-        }
-    }
-    return true;
-}
-
 // Absorption that is the same all along the band takes light, but no colour.
 bool coloured(const optics::Absorption& absorption) {
     return std::adjacent_find(absorption.perM.begin(), absorption.perM.end(), std::not_equal_to<>()) != absorption.perM.end();
@@ -41,7 +15,7 @@ bool coloured(const optics::Absorption& absorption) {
 
 }  // namespace
 
-PlanFacts gatherFacts(const Request& request, const scene::Light& key, const View& camera) {
+PlanFacts gatherFacts(const Request& request, const scene::Light& key, const View& camera, const Enclosure& enclosure) {
     PlanFacts facts;
     const scene::Scene& scene = *request.scene;
     double pixels = 0.0;
@@ -49,6 +23,7 @@ PlanFacts gatherFacts(const Request& request, const scene::Light& key, const Vie
         const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
         if (!material.caster) {
             ++facts.receivers;
+            facts.walls += !enclosure.shades(object, key);
             facts.receiversTextured = facts.receiversTextured || material.baseColorTexture >= 0;
             facts.receiversGlossy = facts.receiversGlossy || glossy(material);
             continue;
@@ -66,7 +41,7 @@ PlanFacts gatherFacts(const Request& request, const scene::Light& key, const Vie
         pixels += double(box.width) * double(box.height);
     }
     facts.castersLit = facts.casters;
-    facts.shadowCasters = facts.receivers > 0 && !inOnePlane(scene);
+    facts.shadowCasters = facts.walls < facts.receivers;
     facts.receiversInShadow = facts.receiversInMap = facts.receivers;
     facts.cookie = key.cookie >= 0;
     facts.lines = std::holds_alternative<optics::Lines>(key.spectrum);

@@ -14,3 +14,12 @@ vec3 concentration(sampler2D inner, sampler2D outer, View view, vec2 outerScale,
     float hidden = layer < 1.0 ? behindLayer(view, pos, layer) : 0.0;
     return inOuter ? sum * clamp(3.0 - 100.0 * hidden, 0.0, 1.0) : vec3(0.0);  // fades from 2% to 3% behind
 }
+
+// Where nothing landed outside the inner map: the same without the outer one.
+vec3 concentration(sampler2D inner, View view, vec3 pos) {
+    vec2 offset = viewToUv(view, pos) - 0.5;
+    vec4 fine = texture(inner, 0.5 + offset);
+    bool inInner = all(lessThan(abs(offset), vec2(0.5))) && (!view.perspective || pos.z < 0.0);
+    float hidden = fine.a < 1.0 ? behindLayer(view, pos, fine.a) : 0.0;
+    return inInner ? max(fine.rgb, vec3(0.0)) * clamp(3.0 - 100.0 * hidden, 0.0, 1.0) : vec3(0.0);
+}

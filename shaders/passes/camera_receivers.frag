@@ -57,7 +57,11 @@ void main() {
     if (u_hasCookie) share *= cookie;
 #endif
 #if MAP
+    #if MAP == 2
     share += concentration(u_map, u_outerMap, u_mapView, u_outerScale, v_map);
+#else
+    share += concentration(u_map, u_mapView, v_map);
+#endif
 #endif
     vec3 key = u_lights[0].rgb * toKey.w * share;  // irradiance across the light's direction
     vec3 irradiance = key * cosKey;

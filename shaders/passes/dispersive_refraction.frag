@@ -19,7 +19,11 @@ uniform int u_bounces;                 // interfaces met after the second
 uniform int u_nodeCount;
 uniform vec4 u_nodes[8];               // relative index, absorption (1/m), wavelengths up to it: first, one past the last
 uniform vec4 u_wavelengths[64];        // rgb weight; place between its nodes, 0..1
+#if ABSORPTION
 uniform float u_absorption[64];        // 1/m
+
+float transmittance(float perM, float length_) { return exp(-perM * length_); }
+#endif
 #endif
 const float kOrderlySpread = 0.08;     // radians from one pixel to the next
 layout(location = 0) out vec4 o_radiance;
@@ -99,7 +103,9 @@ vec3 follow(vec3 kept, vec3 at, vec3 dir, float index, float absorption) {
         kept *= settled;
         vec3 exitNormal = takesFront ? frontNormal : backNormal;
         at += t * dir;
-        kept *= exp(-absorption * t);
+#if ABSORPTION
+        kept *= transmittance(absorption, t);
+#endif
         if (refractDielectric(dir, -exitNormal, index, outside, R)) {
             Sight seen = look(at, outside);
             color += kept * (1.0 - R) * radiance(seen, seen, 0.0);
@@ -135,6 +141,15 @@ void main() {
     float through = (layerToDepth(u_view, backLayer) + pos.z) / max(-sight.z, 1e-3);
     float guess = backLayer > 0.0 && through > 0.0 ? min(through, u_diameter) : 0.05 * u_diameter;
 
+#if SINGLE
+    Node node = traceNode(u_nodes[0].x, pos, sight, normal, guess);
+    vec3 reflected = u_wavelengths[0].rgb * node.front, arriving = u_wavelengths[0].rgb - reflected;
+#if ABSORPTION
+    arriving *= transmittance(u_nodes[0].y, node.length_);
+#endif
+    color += arriving * (1.0 - node.back) * radiance(node.sight, node.sight, 0.0);
+    color += follow(arriving * node.back, node.exit, reflect(node.inside, node.normal), u_nodes[0].x, u_nodes[0].y);
+#else
     // From node to node, and the wavelengths between.
     vec3 reflected = vec3(0.0), kept = vec3(0.0);
     vec4 meanExit = vec4(0.0);      // of what stays inside, by weight; w: the weights' sum
@@ -151,7 +166,10 @@ void main() {
         for (int i = int(u_nodes[n].z); i < int(u_nodes[n].w); ++i) {
             float f = u_wavelengths[i].w, R1 = mix(a.front, b.front, f), R2 = mix(a.back, b.back, f);
             vec3 weight = u_wavelengths[i].rgb;
-            vec3 arriving = weight * ((1.0 - R1) * exp(-u_absorption[i] * mix(a.length_, b.length_, f)));
+            vec3 arriving = weight * (1.0 - R1);
+#if ABSORPTION
+            arriving *= transmittance(u_absorption[i], mix(a.length_, b.length_, f));
+#endif
             reflected += weight * R1;
             color += arriving * (1.0 - R2) * radiance(from, to, together ? f : step(0.5, f));
             kept += arriving * R2;
@@ -169,6 +187,7 @@ void main() {
 #if !SPLIT
     meanGlass /= meanExit.w;
     color += follow(kept, meanExit.xyz / meanExit.w, normalize(meanDir + 1e-9 * sight), meanGlass.x, meanGlass.y);
+#endif
 #endif
 #endif
 #if SPLIT

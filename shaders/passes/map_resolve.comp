@@ -67,6 +67,8 @@ void main() {
 #if JUDGED
     book(kLedgerHalves, halves);
     book(kLedgerGrain, grain * kRoughnessUnit);
+#else
+    book(kLedgerOuter, deposited);
 #endif
 #endif
 #if JUDGED

@@ -42,6 +42,7 @@ LAYOUT_CONST kLedgerRoughness = 10;    // what texels of the pyramid's coarser l
 LAYOUT_CONST kLedgerStep = 11;         // what the map would change by, were each wavelength spread over its stretch
 LAYOUT_CONST kLedgerStepOf = 12;       // of this luminance
 LAYOUT_CONST kLedgerGrain = 13;        // what texels of the finest level differ from their neighbours in the row by, / 16
+LAYOUT_CONST kLedgerOuter = 14;        // the part of kLedgerDeposited in the outer map
 LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
 LAYOUT_CONST kLedgerBanks = 32;
 

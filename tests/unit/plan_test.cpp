@@ -137,7 +137,7 @@ TEST(Plan, NamesThePartsThatAreNotNeeded) {
     Request request;
     request.transport.filter = false;
     RenderPlan plan = makePlan(facts, request);
-    for (const char* part : {"absorption", "cookie", "pyramid", "bands"}) {
+    for (const char* part : {"cookie", "pyramid", "bands"}) {
         EXPECT_THAT(row(plan, "photon_trace").without, Contains(HasSubstr(part)));
     }
     EXPECT_THAT(row(plan, "map_resolve").without, Contains(HasSubstr("pyramid")));
@@ -153,7 +153,6 @@ TEST(Plan, NamesThePartsThatAreNotNeeded) {
     request.transport.filter = true;
     request.still = true;
     plan = makePlan(facts, request);
-    EXPECT_THAT(row(plan, "photon_trace").without, Not(Contains(HasSubstr("absorption"))));
     EXPECT_THAT(row(plan, "photon_list").without, testing::IsEmpty());
     EXPECT_THAT(row(plan, "dispersive_refraction").without, testing::IsEmpty());
     EXPECT_THAT(row(plan, "present").without, testing::IsEmpty());
@@ -222,7 +221,7 @@ TEST(PlanFacts, TellsWhatTheGlassDoes) {
     request.scene = scene;
     View camera;
     camera.worldToView = lookAlong(scene->cameras.front().eye, glm::vec3(0, 0, -1), glm::vec3(0, 1, 0));
-    const auto facts = [&] { return gatherFacts(request, scene->lights[static_cast<std::size_t>(keyLight(*scene))], camera); };
+    const auto facts = [&] { return gatherFacts(request, scene->lights[static_cast<std::size_t>(keyLight(*scene))], camera, Enclosure(*scene->geometry)); };
     EXPECT_GT(facts().casters, 0);
     EXPECT_TRUE(facts().dispersive);
     for (scene::Material& material : scene->materials) {
@@ -238,6 +237,21 @@ TEST(PlanFacts, TellsWhatTheGlassDoes) {
     EXPECT_FALSE(facts().dispersive);
     for (scene::Material& material : scene->materials) material.absorption = {{400, 600}, {2.0, 5.0}};
     EXPECT_TRUE(facts().dispersive);
+}
+
+TEST(PlanFacts, TheWallsOfARoomShadeNothing) {
+    const scene::Scene room = std::move(*scene::loadBuiltin("sphere"));
+    const Enclosure enclosure(*room.geometry);
+    scene::Light inside = room.lights.front(), outside = inside, sun = inside;
+    outside.position = {0, 5, 0};
+    sun.type = scene::LightType::Directional;
+    sun.direction = {0, -1, 0};
+    for (const scene::Object& object : room.geometry->objects) {
+        const bool caster = room.materials[static_cast<std::size_t>(object.material)].caster;
+        EXPECT_EQ(enclosure.shades(object, inside), caster) << object.name;
+        EXPECT_EQ(enclosure.shades(object, outside), caster || object.name == "ceiling") << object.name;
+        EXPECT_EQ(enclosure.shades(object, sun), object.name != "floor") << object.name << ", the walls edge on";
+    }
 }
 
 }  // namespace

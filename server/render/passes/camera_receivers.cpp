@@ -15,10 +15,13 @@ namespace {
 
 constexpr std::size_t kMaxLights = 8;  // u_lights of the shader
 
+// MAP of the shader.
+enum Maps : int { kNoMap, kInnerMap, kBothMaps };
+
 // Texture units, one for each sampler of the shader.
 enum Unit : int { kBaseColor, kShadow, kMap, kOuterMap, kCookie };
 
-std::vector<gl::Flag> flags(bool shadow, bool map, bool texture, bool full) {
+std::vector<gl::Flag> flags(bool shadow, int map, bool texture, bool full) {
     return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}};
 }
 
@@ -43,7 +46,11 @@ CameraReceivers::CameraReceivers(gl::ShaderLibrary& shaders)
     : shaders_(shaders),
       trilinear_(gl::makeSampler(GL_LINEAR_MIPMAP_LINEAR, GL_REPEAT, "base colour")),
       linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "linear")),
-      shadow_(gl::makeShadowSampler("shadow")) {}
+      shadow_(gl::makeShadowSampler("shadow")) {
+    const std::uint8_t white[4] = {255, 255, 255, 255};
+    white_.ensure(1, 1, GL_RGBA8, "white");
+    glTextureSubImage2D(white_.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
+}
 
 void CameraReceivers::setFrame(const Inputs& in, GLuint program) const {
     const Lighting& lighting = in.lighting;
@@ -78,7 +85,7 @@ void CameraReceivers::setMaterial(const Inputs& in, const scene::Material& mater
         .set("u_roughness", material.roughness)
         .set("u_metallic", material.metallic)
         .set("u_gloss", glossy(material) ? 1.0f : 0.0f);
-    if (material.baseColorTexture >= 0) glBindTextureUnit(kBaseColor, in.scene.texture(material.baseColorTexture));
+    glBindTextureUnit(kBaseColor, material.baseColorTexture >= 0 ? in.scene.texture(material.baseColorTexture) : white_.get());
 }
 
 void CameraReceivers::run(const Inputs& in, const Outputs& out) {
@@ -114,11 +121,13 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
     for (const scene::Object& object : in.scene.geometry().objects) {
         const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
         if (material.caster) continue;
-        const bool shadow = lighting.hasShadow && inView(object, lighting.shadowView);
-        const bool lit = map && inView(object, lighting.outerView);
-        const bool full = hasCookie || lighting.lights.size() > 1 || glossy(material);
-        const GLuint program = shaders_.program(
-            in.asPublished ? "thesis_receivers" : "camera_receivers", flags(shadow, lit, material.baseColorTexture >= 0, full));
+        const bool shadow = lighting.hasShadow && (inView(object, lighting.shadowView) || in.forced.has(Omission::ShadowLookup));
+        const bool lit = map && (inView(object, lighting.outerView) || in.forced.has(Omission::MapLookup));
+        const bool outer = lighting.hasOuterMap || in.forced.has(Omission::OuterMap);
+        const bool full = hasCookie || lighting.lights.size() > 1 || glossy(material) || in.forced.has(Omission::Gloss);
+        const bool texture = material.baseColorTexture >= 0 || in.forced.has(Omission::Textures);
+        const GLuint program = shaders_.program(in.asPublished ? "thesis_receivers" : "camera_receivers",
+                                               flags(shadow, !lit ? kNoMap : outer ? kBothMaps : kInnerMap, texture, full));
         if (std::find(ready.begin(), ready.end(), program) == ready.end()) {
             setFrame(in, program);
             ready.push_back(program);
@@ -132,8 +141,8 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
 }
 
 void CameraReceivers::warmUp() {
-    for (int bits = 0; bits < 16; ++bits) {
-        shaders_.program("camera_receivers", flags(bits & 1, bits & 2, bits & 4, bits & 8));
+    for (int bits = 0; bits < 8; ++bits) {
+        for (const int map : {kNoMap, kInnerMap, kBothMaps}) shaders_.program("camera_receivers", flags(bits & 1, map, bits & 2, bits & 4));
     }
 }
 

@@ -7,6 +7,7 @@
 #include "gl/shader_library.h"
 #include "render/gpu_scene.h"
 #include "render/lighting.h"
+#include "render/omission.h"
 #include "render/view.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,7 @@ class CameraReceivers {
         const View& view;                            // the camera's, perspective or parallel
         int width, height;                           // pixels
         bool asPublished = false;                    // thesis_receivers: the thesis's shading with its gains
+        Omissions forced;                            // that are done all the same
     };
     struct Outputs {
         gl::Texture& color;  // RGBA16F, linear BT.709 radiance over radianceUnit(); background: the environment. a = 1
@@ -46,6 +48,7 @@ class CameraReceivers {
 
     gl::ShaderLibrary& shaders_;
     gl::Sampler trilinear_, linear_, shadow_;
+    gl::Texture white_;                              // where a texture is forced on what has none
 };
 
 }  // namespace caustream::render

@@ -16,11 +16,13 @@ constexpr std::size_t kNodes = 2, kSplitNodes = 8;  // traced exactly; the shade
 constexpr int kSurroundings = 8;  // texels a side, as the shader says
 enum Unit : int { kFront, kBack, kReceiversDepth, kBackground, kSurroundingsUnit };
 
-std::vector<gl::Flag> flags(bool thin, bool split) { return {{"THIN", thin}, {"SPLIT", split}}; }
+std::vector<gl::Flag> flags(bool thin, bool split, bool single, bool absorption) {
+    return {{"THIN", thin}, {"SPLIT", split}, {"SINGLE", single}, {"ABSORPTION", absorption}};
+}
 
 // Nodes are `most` of the wavelengths, spread evenly from the first to the last. A wavelength belongs to the node at or
 // after it and lies between that and the one before by its index.
-void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& glass, std::size_t most) {
+void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& glass, std::size_t most, bool absorbs) {
     const auto& all = glass.wavelengths;
     const std::size_t count = std::min<std::size_t>(all.size(), layout::kMostWavelengths);
     std::vector<std::size_t> nodes;
@@ -41,8 +43,8 @@ void setGlass(const gl::Uniforms& uniforms, const DispersiveRefraction::Glass& g
     }
     uniforms.set("u_nodeCount", static_cast<int>(nodes.size()))
         .set("u_nodes", std::span<const glm::vec4>(nodeValues))
-        .set("u_wavelengths", std::span<const glm::vec4>(wavelengths))
-        .set("u_absorption", std::span<const float>(absorption));
+        .set("u_wavelengths", std::span<const glm::vec4>(wavelengths));
+    if (absorbs) uniforms.set("u_absorption", std::span<const float>(absorption));
 }
 
 // The key light in the camera's space.
@@ -90,7 +92,11 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
     glScissor(in.box.x, in.box.y, in.box.width, in.box.height);
 
     const bool split = settings.split && !in.glass.thinWalled;
-    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled, split));
+    const auto& wavelengths = in.glass.wavelengths;
+    const bool single = !in.glass.thinWalled && wavelengths.size() == 1 && !settings.forced.has(Omission::OneWavelength);
+    const bool absorbs = !in.glass.thinWalled && (settings.forced.has(Omission::Absorption) ||
+        std::any_of(wavelengths.begin(), wavelengths.end(), [](const Wavelength& w) { return w.absorptionPerM > 0.0f; }));
+    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled, split, single, absorbs));
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_view", in.view);
@@ -109,7 +115,7 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
         .set("u_receiverSteps", settings.receiverSteps)
         .set("u_diameter", glm::length(in.bounds.max - in.bounds.min))
         .set("u_tint", in.glass.tint);
-    if (!in.glass.thinWalled) setGlass(uniforms, in.glass, split ? kSplitNodes : kNodes);
+    if (!in.glass.thinWalled) setGlass(uniforms, in.glass, split ? kSplitNodes : kNodes, absorbs);
     setKey(uniforms, in.lighting, in.view);
 
     const GLuint textures[] = {in.front.get(), in.back.get(), in.receiversDepth.get(), background_.get(),
@@ -128,9 +134,8 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
 
 void DispersiveRefraction::warmUp() {
     shaders_.program("surroundings");
-    shaders_.program("dispersive_refraction", flags(false, false));
-    shaders_.program("dispersive_refraction", flags(false, true));
-    shaders_.program("dispersive_refraction", flags(true, false));
+    for (int bits = 0; bits < 8; ++bits) shaders_.program("dispersive_refraction", flags(false, bits & 1, bits & 2, bits & 4));
+    shaders_.program("dispersive_refraction", flags(true, false, false, false));
 }
 
 }  // namespace caustream::render

@@ -8,6 +8,7 @@
 #include "gl/names.h"
 #include "gl/shader_library.h"
 #include "render/lighting.h"
+#include "render/omission.h"
 #include "render/passes/camera_casters.h"
 #include "render/view.h"
 
@@ -42,6 +43,7 @@ class DispersiveRefraction {
         int receiverSteps = 4;                // steps of the search in the receivers' picture, 1..32
         int bounces = 2;                      // interfaces met inside after the second, 0..16
         bool split = false;                   // bounces for up to 8 indices instead of one mean ray: several times the cost
+        Omissions forced{};                   // that are done all the same
     };
 
     explicit DispersiveRefraction(gl::ShaderLibrary& shaders);

@@ -8,14 +8,14 @@
 
 namespace caustream::render {
 
-void setEmission(const gl::Uniforms& uniforms, const scene::Light& light, const View& view) {
+void setEmission(const gl::Uniforms& uniforms, const scene::Light& light, const View& view, bool cookie) {
     const glm::mat3 toView(view.worldToView);
     const bool cone = light.type == scene::LightType::Spot;
     const float outer = glm::radians(light.outerConeDeg);
     uniforms.set("u_lightAxis", toView * light.direction)
         .set("u_coneCos", cone ? glm::vec2(std::cos(glm::radians(light.innerConeDeg)), std::cos(outer))
                                : glm::vec2(-2.0f, -3.0f));
-    if (light.cookie < 0) return;
+    if (!cookie) return;
     // Cookie plane: x right and y up of the light's own frame, z along its axis; the outer cone spans -1..1.
     const glm::mat3 own(lookAlong(glm::vec3(0.0f), light.direction, glm::vec3(0, 1, 0)));
     const float scale = 1.0f / std::tan(std::min(outer, 1.5f));
@@ -33,7 +33,7 @@ void PhotonList::run(const Inputs& in, gl::Buffer& list, const gl::Buffer& ledge
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_emission", in.emission);
-    setEmission(uniforms, in.light, in.emission);
+    setEmission(uniforms, in.light, in.emission, in.cookie != 0);
     uniforms.set("u_front", 0);
     glBindTextureUnit(0, in.front.get());
     if (in.cookie) glBindTextureUnit(1, in.cookie);

@@ -8,7 +8,7 @@
 namespace caustream::render {
 
 // Sets what shaders/common/emission.glsl asks of the light, in the space of `view`.
-void setEmission(const gl::Uniforms& uniforms, const scene::Light& light, const View& view);
+void setEmission(const gl::Uniforms& uniforms, const scene::Light& light, const View& view, bool cookie);
 
 class PhotonList {
    public:

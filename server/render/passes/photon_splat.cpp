@@ -23,7 +23,7 @@ void PhotonSplat::run(const Inputs& in, bool alpha, const gl::Texture& map) {
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_lightView", in.view);
-    setEmission(uniforms, in.light, in.view);
+    setEmission(uniforms, in.light, in.view, in.cookie != 0);
     uniforms.set("u_front", 0)
         .set("u_back", 2)
         .set("u_receivers", 3)

@@ -17,7 +17,7 @@ void PhotonTrace::dispatch(const Inputs& in, int retry, const gl::Buffer& groups
     setView(uniforms, "u_backView", in.backView);
     setView(uniforms, "u_mapView", in.mapView);
     setView(uniforms, "u_outerView", in.outerView);
-    setEmission(uniforms, in.light, in.emission);
+    setEmission(uniforms, in.light, in.emission, in.cookie != 0);
     uniforms.set("u_emissionToBack", in.backView.worldToView * glm::affineInverse(in.emission.worldToView))
         .set("u_backToMap", in.mapView.worldToView * glm::affineInverse(in.backView.worldToView));
 

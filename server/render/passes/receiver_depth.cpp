@@ -19,6 +19,7 @@ void ReceiverDepth::run(const Inputs& in, gl::Texture& depth) {
     in.scene.bind();
     in.scene.drawWhere([&](const scene::Object& object) {
         const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
+        if (in.leftOut && in.leftOut(object)) return false;
         return !material.caster || (in.casters && refracts(material, in.outsideIndex));
     });
     glDisable(GL_DEPTH_TEST);

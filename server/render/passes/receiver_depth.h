@@ -1,5 +1,7 @@
 // Depth of the receivers (and of the casters, for shadows) from one view of the light.
 #pragma once
+#include <functional>
+
 #include "gl/names.h"
 #include "gl/shader_library.h"
 #include "render/gpu_scene.h"
@@ -16,6 +18,7 @@ class ReceiverDepth {
         int size;                 // texels a side
         bool casters = false;     // also the casters that cast a shadow: those that bend light
         double outsideIndex = 1.0;
+        std::function<bool(const scene::Object&)> leftOut{};   // receivers that are not drawn; none when empty
     };
 
     explicit ReceiverDepth(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
