@@ -19,7 +19,7 @@ client            | client/connection/ protocol/
 client/shot       | client/shot/ client/connection/ protocol/
 client/view       | client/view/ client/connection/ protocol/
 scenes            | scenes/
-shaders           | shared/ common/
+shaders           | shared/ common/ passes/
 shaders/common    | common/ shared/
 shaders/shared    |
 '
