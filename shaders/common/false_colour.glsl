@@ -7,10 +7,3 @@ vec3 layerColour(float layer) {
 
 // Each channel: 1 is mid grey, a factor of 64 to white and to black.
 vec3 logColour(vec3 value) { return clamp(0.5 + log2(max(value, 1e-6)) / 12.0, 0.0, 1.0); }
-
-// Black at nothing, then blue, green, yellow, white over twelve stops below 1 to six above.
-vec3 heatColour(float value) {
-    if (value <= 0.0) return vec3(0.0);
-    float x = clamp((log2(value) + 12.0) / 18.0, 0.02, 1.0);
-    return clamp(vec3(3.0 * x - 1.2, 2.2 * x - 0.3, x < 0.4 ? 0.25 + 1.5 * x : max(1.65 - 2.0 * x, 5.0 * x - 4.0)), 0.0, 1.0);
-}

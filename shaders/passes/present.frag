@@ -18,10 +18,8 @@ vec3 shown(ivec2 at) {
     return value.w > 0.0 ? clamp(0.5 + 0.5 * value.xyz, 0.0, 1.0) : vec3(0.0);
 #elif MODE == 3
     return layerColour(u_depthImage ? value.r : value.w);
-#elif MODE == 4
-    return logColour(value.rgb * u_scale);
 #else
-    return heatColour(value.r * u_scale);
+    return logColour(value.rgb * u_scale);
 #endif
 }
 

@@ -5,7 +5,7 @@
 namespace caustream::render {
 
 namespace {
-constexpr int kModes = 6;
+constexpr int kModes = 5;
 
 std::vector<gl::Flag> flags(int mode, bool downsample) { return {{"MODE", mode}, {"DOWNSAMPLE", downsample}}; }
 }  // namespace

@@ -16,12 +16,11 @@ class Present {
         Normals,   // xyz in -1..1 of a layer -> colour; empty texels black
         Layer,     // w of a layer or the red of a depth image: near bright, far dim, nothing black
         Map,       // rgb concentration on a log scale, 1 at mid grey
-        Scalar,    // red on a log scale as blue-green-yellow
     };
     struct Inputs {
         GLuint image = 0;          // linear; rows bottom to top
         Mode mode = Mode::Picture;
-        float scale = 1.0f;        // Picture: 2^EV; Linear: unit of the output; Map, Scalar: multiplies first
+        float scale = 1.0f;        // Picture: 2^EV; Linear: unit of the output; Map: multiplies first
         bool depthImage = false;   // Layer: the layer is in red (depth or R32F), not in w
         bool downsample = false;   // the image is twice the output's size a side: 4x anti-aliasing
     };
