@@ -78,7 +78,7 @@ std::vector<OmissionCase> omissionCases(int size, int photonGrid) {
         {Omission::UnlitGlass, picture(lampTurnedAway(builtin("sphere"))), Moves::Light},
         {Omission::Colours, clear, Moves::Light, 2, "seven roundings of a photon's flux in place of one"},
         {Omission::NoShadow, picture(floorAlone(builtin("sphere"))), Moves::Light},
-        {Omission::Walls, sphere, Moves::Light, 1, "a wall no longer takes a little of its own light"},
+        {Omission::Walls, sphere, Moves::Light, 1, "in a crease a wall's texel shaded the next wall, wrongly; more of 255 where a larger picture shows the crease's pixels"},
         {Omission::Absorption, sphere, Moves::Light, 1, "the driver's exp(0) is 1 to a few units in the last place"},
         {Omission::OneWavelength, clear, Moves::Light, 1, "a mean over one value is divided by its weight"},
         {Omission::Cookie, sphere, Moves::Light, 1, "white's luminance is 1 to one unit in the last place"},
