@@ -120,7 +120,7 @@ inline constexpr int kContinuousBands = 7;  // wavelengths of a map in bands tha
 
 struct TransportState {
     TransportMode mode = TransportMode::Refined;
-    int wavelengths = 7;                // 1..64 or kContinuous; ignored when wavelengthsNm is given
+    int wavelengths = kContinuous;      // or 1..64; ignored when wavelengthsNm is given
     std::vector<double> wavelengthsNm;  // exact wavelengths, ascending
     int photonGrid = 0;                 // 0: chosen by the server
     int mapSize = 512;

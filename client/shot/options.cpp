@@ -22,8 +22,8 @@ FILE.json tells the rest: stream.info, the frame's header, statistics, the map's
 --set takes any path of the state document, dotted or as a JSON Pointer (/lights/key.001/position), and a value in JSON:
   lights.NAME.position=[x,y,z]  lights.NAME.direction=[x,y,z]  lights.NAME.half_angle_deg=20
   lights.NAME.intensity=["cd",100]  camera.eye=[x,y,z]  camera.target=[x,y,z]  camera.fov_y_deg=40
-  materials.NAME.dispersion=["cauchy",1.458,0.00354]  transport.wavelengths=7  transport.map_size=1024
-  transport.photon_grid=512  transport.gap_fill=true
+  materials.NAME.dispersion=["cauchy",1.458,0.00354]  transport.map_size=1024  transport.photon_grid=512
+  transport.wavelengths="continuous" (the default) or 1 to 64 exact ones  transport.gap_fill=true
 
 scripts/run.sh --shot FILE starts a server, takes the picture and stops the server.)";
 

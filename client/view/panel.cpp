@@ -182,7 +182,9 @@ void drawTransport(Model& model, Editor& editor) {
         ImGui::EndCombo();
     }
     label("Wavelengths");
-    if (ImGui::SliderInt("##wavelengths", &transport.wavelengths, 1, 64, "%d", ImGuiSliderFlags_AlwaysClamp)) changed();
+    const bool continuous = transport.wavelengths == protocol::kContinuous;
+    if (ImGui::SliderInt("##wavelengths", &transport.wavelengths, protocol::kContinuous, 64, continuous ? "continuous" : "%d",
+                         ImGuiSliderFlags_AlwaysClamp)) changed();
 
     constexpr int kGrids[] = {0, 128, 256, 512, 1024, 2048}, kMaps[] = {256, 512, 1024, 2048};
     const auto sizes = [&](const char* title, const char* id, const char* field, int& value, auto& list) {

@@ -51,7 +51,7 @@ export class Panel {
         on('cauchy-b', 'input', (value) => this.cauchy_(this.cauchyNow_()[0], sliderToB(Number(value))));
         on('wavelengths', 'input', (value) => change({ transport: { wavelengths: this.countFor_(this.mode_(), Number(value)) } }));
         on('mode', 'change', (mode) => {
-            const now = this.session_.shown.transport?.wavelengths ?? 7;
+            const now = this.session_.shown.transport?.wavelengths ?? 'continuous';
             const wavelengths = Array.isArray(now) ? now.length : now;
             change({ transport: { mode, wavelengths: wavelengths === 'continuous' ? wavelengths : this.countFor_(mode, wavelengths) } });
         });
@@ -65,8 +65,9 @@ export class Panel {
         return this.session_.shown.transport?.mode ?? 'refined';
     }
 
-    // The published algorithm has colours for 1, 7 or 21 wavelengths.
+    // 0 is the slider's first place: continuous. The published algorithm has colours for 1, 7 or 21 wavelengths.
     countFor_(mode, count) {
+        if (count === 0) return 'continuous';
         return mode !== 'thesis' ? count : count < 4 ? 1 : count < 14 ? 7 : 21;
     }
 
@@ -144,8 +145,8 @@ export class Panel {
         this.refreshGlass_(shown);
         this.refreshExposure_(shown);
         const transport = shown.transport ?? {};
-        const count = Array.isArray(transport.wavelengths) ? transport.wavelengths.length : transport.wavelengths ?? 7;
-        show('wavelengths', count, String(count));
+        const count = Array.isArray(transport.wavelengths) ? transport.wavelengths.length : transport.wavelengths ?? 'continuous';
+        show('wavelengths', count === 'continuous' ? 0 : count, String(count));
         fill(byId('mode'), [['refined', 'Refined'], ['thesis', 'As published (2012)']], this.mode_());
         const withOwn = (sizes, own) => [...new Set([...sizes, own])].sort((a, b) => a - b);
         const grid = transport.photon_grid ?? 0, mapSize = transport.map_size ?? 512;

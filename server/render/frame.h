@@ -21,7 +21,7 @@ constexpr int kContinuousBands = 7;         // exact wavelengths of a map in ban
 
 struct Transport {
     Mode mode = Mode::Refined;
-    int wavelengths = 7;                    // 1..64 exact ones, or kContinuous; ignored when wavelengthsNm is given
+    int wavelengths = kContinuous;          // or 1..64 exact ones; ignored when wavelengthsNm is given
     std::vector<double> wavelengthsNm;      // exact wavelengths, ascending, instead of the uniform ones
     int photonGrid = 0;                     // photons per side of each caster's emission view; 0: chosen for the GPU
     int mapSize = 512;                      // texels per side of the spectral map

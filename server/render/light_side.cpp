@@ -12,7 +12,7 @@ namespace caustream::render {
 
 namespace {
 
-constexpr int kSeenWavelengths = 32;     // of a continuous spectrum on the camera's side, which traces a few nodes of them
+constexpr int kSeenWavelengths = 16;     // of a continuous spectrum on the camera's side, which traces a few nodes of them
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
 constexpr int kShadowSize = 1024;
 constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels

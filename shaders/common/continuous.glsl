@@ -3,10 +3,12 @@
 // Interpolated only between nodes that land on one surface; what lies between others is traced (RETRY 1).
 uniform vec4 u_cumulative[kSpectrumSteps + 1];  // XYZ up to a place of the band, violet to red, uniform in 1/lambda^2; n outside / n inside there
 uniform float u_absorption[kSpectrumSteps + 1]; // 1/m
+const float kGreen = 0.7;                       // place of the band where most of its luminance lies
 const float kOneSurface = 2e-3;                 // of the depth: the middle of two nodes lies on their surface within this
 const int kMostSamples = 12;                    // of a photon's spectrum
+const int kSampleRoom = kMostSamples + 1 + kMostNodes;   // the first and the last are parts, and so where intervals are left out
 const float kSparse = 4.0;                      // texels of a sample beyond which it is spread over wider ones
-const int kTracedSamples = 8;                   // of an interval that cannot be interpolated
+const int kTracedSamples = 4;                   // of an interval that cannot be interpolated
 
 int intervals() { return u_wavelengths - 1; }
 
@@ -16,6 +18,9 @@ vec4 spectrumAt(float place) {
     int step = min(int(at), kSpectrumSteps - 1);
     return mix(u_cumulative[step], u_cumulative[step + 1], at - float(step));
 }
+// Where in a sample's width a photon's first one ends: R2 (Roberts 2018), so that neighbours differ evenly.
+float phaseOf(ivec2 texel) { return fract(dot(vec2(texel), vec2(0.75487767, 0.56984029))); }
+
 float absorptionAt(float place) {
     float at = place * float(kSpectrumSteps);
     int step = min(int(at), kSpectrumSteps - 1);
@@ -43,6 +48,7 @@ void main() {
     ivec2 innerSize = textureSize(u_receivers, 0), outerSize = textureSize(u_outerReceivers, 0);
     int outerFirst = firstTexelOf(u_levels, innerSize);
 
+    float phase = phaseOf(texel);
     Tally tally = Tally(0.0, 0.0, 0.0);
     float rejected = 0.0, left = 0.0, missed = 0.0;
     uint remaining = retry.z;
@@ -53,11 +59,11 @@ void main() {
         Held held = Held(false, vec2(0.0), 0.0, vec3(0.0));
         float first = float(interval) / float(intervals()), last = float(interval + 1) / float(intervals()), from = first;
         vec3 before = spectrumAt(first).xyz;
-        // Where neither end lands, one sample of the whole interval (j = 0) is enough if it leaves or stays inside as well.
-        for (int j = dark ? 0 : 1; j <= kTracedSamples + 1; ++j) {
+        // Where neither end lands, one sample of the whole interval (j = 0) is enough unless that lands.
+        for (int j = dark ? 0 : 1; j <= kTracedSamples + 2; ++j) {
             Held next = Held(false, vec2(0.0), 0.0, vec3(0.0));
-            bool trial = j == 0, flush = j > kTracedSamples;
-            float to = trial ? last : mix(first, last, min(float(j) / float(kTracedSamples), 1.0));
+            bool trial = j == 0, flush = j > kTracedSamples + 1;
+            float to = trial ? last : mix(first, last, min((float(j) - phase) / float(kTracedSamples), 1.0));
             float place = 0.5 * (from + to), way = guess;
             vec3 upTo = spectrumAt(to).xyz, colour = max(upTo - before, vec3(0.0)), exitNormal, origin, ray;
             vec2 reflectance;
@@ -76,7 +82,7 @@ void main() {
                     if (found == kHit && !trial) deposit(placeAt(at, outerSize, outerFirst), next.amount);
                 }
             }
-            bool lost = passed == kTotal || found == kLeftView || found == kNoReceiver;
+            bool lost = found != kHit;
             if ((!trial || lost) && !flush) {
                 tally = Tally(tally.absorbed + own.absorbed, tally.reflected + own.reflected, tally.total + own.total);
                 rejected += found == kRejected ? colour.y * flux : 0.0;   // nothing is left of what is reflected totally
@@ -104,6 +110,30 @@ void main() {
     book(kLedgerNoReceiver, missed);
 }
 #else
+
+// Neighbouring samples mostly land in the same texels: a run of them is gathered and written once.
+void depositSamples(vec2 landed[kSampleRoom], vec3 amount[kSampleRoom], int samples, ivec2 size, int firstTexel, float part) {
+    int j = part > 0.0 ? 0 : samples;
+    while (j < samples) {
+        Place place = placeAt(landed[j], size, firstTexel);
+        vec3 corner0 = vec3(0.0), corner1 = vec3(0.0), corner2 = vec3(0.0), corner3 = vec3(0.0);
+        int run = place.texel;
+        while (run == place.texel) {
+            vec4 parts = shares(place.f) * part;
+            corner0 += parts.x * amount[j];
+            corner1 += parts.y * amount[j];
+            corner2 += parts.z * amount[j];
+            corner3 += parts.w * amount[j];
+            ++j;
+            if (j >= samples) break;
+            place = placeAt(landed[j], size, firstTexel);
+        }
+        addTo(run, corner0);
+        addTo(run + 1, corner1);
+        addTo(run + size.x, corner2);
+        addTo(run + size.x + 1, corner3);
+    }
+}
 
 struct Node {
     vec2 at;           // uv of the inner map
@@ -190,26 +220,32 @@ void main() {
     float most = float(kMostSamples), parts = float(intervals());
     level = clamp(max(level, log2(max(spread / (kSparse * most), 1e-3))), 0.0, float(u_levels - 1));
     float wanted = clamp(ceil(2.0 * spread * exp2(-level)), 1.0, most);
-    if (broken != 0u) wanted = min(ceil(wanted / parts), floor(most / parts)) * parts;
-    float phase = broken != 0u ? 0.0 : fract(dot(vec2(texel), vec2(0.75487767, 0.56984029)));
+    float phase = wanted < 3.0 ? 0.0 : phaseOf(texel);
     Level pyramid = levelOf(level, innerSize);
     float from = 0.0;
     vec3 before = vec3(0.0);
-    for (int j = 0; from < 1.0 && bridged != 0u; ++j) {
-        float to = min((float(j + 1) - phase) / wanted, 1.0), place = 0.5 * (from + to), node = place * parts;
+    vec2 landed[kSampleRoom];
+    vec3 amount[kSampleRoom];
+    int samples = 0, edge = 1;
+    while (from < 1.0 && bridged != 0u && samples < kSampleRoom) {
+        float next = (float(edge) - phase) / wanted;
+        float to = min(next, broken != 0u ? (floor(from * parts + 1e-3) + 1.0) / parts : 1.0);
+        edge += next <= to ? 1 : 0;
+        float place = wanted == 1.0 && broken == 0u ? kGreen : 0.5 * (from + to), node = place * parts;
         vec3 upTo = spectrumAt(to).xyz, colour = max(upTo - before, vec3(0.0));
         before = upTo;
         from = to;
         int i = min(int(node), intervals() - 1);
-        float f = node - float(i);
+        float f = clamp(node - float(i), 0.0, 1.0);
         Node a = nodes[i], b = nodes[i + 1];
         float flux = (bridged & (1u << i)) != 0u ? entry.flux : 0.0;
         flux = share(flux, colour.y, kLeaves, mix(a.reflectance, b.reflectance, f), absorptionAt(place), mix(a.way, b.way, f), tally);
-        vec2 landed = mix(a.at, b.at, f) - f * (1.0 - f) * bend[i];
-        vec3 amount = colour * (flux * u_fixedPerFlux);
-        deposit(placeAt(landed, pyramid.fineSize, pyramid.fineFirst), amount * (1.0 - pyramid.coarseShare));
-        if (pyramid.coarseShare > 0.0) deposit(placeAt(landed, pyramid.coarseSize, pyramid.coarseFirst), amount * pyramid.coarseShare);
+        landed[samples] = mix(a.at, b.at, f) - f * (1.0 - f) * bend[i];
+        amount[samples] = colour * (flux * u_fixedPerFlux);
+        ++samples;
     }
+    depositSamples(landed, amount, samples, pyramid.fineSize, pyramid.fineFirst, 1.0 - pyramid.coarseShare);
+    depositSamples(landed, amount, samples, pyramid.coarseSize, pyramid.coarseFirst, pyramid.coarseShare);
     if (broken != 0u) {
         uint place = atomicAdd(retryCount, 1u);
         atomicMax(retryGroups[0], place / uint(kGroupSize) + 1u);

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <glm/matrix.hpp>
 
 #include "gl/context.h"
 #include "gl/debug.h"
@@ -14,29 +16,37 @@
 namespace caustream {
 namespace {
 
-image::Comparison compareScene(const std::string& name, render::Mode mode = render::Mode::Refined) {
-    static const auto context = gl::Context::create({.gpu = "software"});
-    static gl::ShaderLibrary shaders;
-    static render::Pipeline pipeline(*context, shaders);
-
-    const reference::Reference reference = reference::load(name);
-    const std::vector<std::uint8_t> glb = reference::makeGlb(reference);
+render::Request mapOf(const reference::Reference& reference, const std::string& name, int sphereLevels = 4) {
+    const std::vector<std::uint8_t> glb = reference::makeGlb(reference, sphereLevels);
     auto scene = scene::loadGlb(std::as_bytes(std::span(glb)), name);
     if (!scene) throw std::runtime_error(scene.error().message);
-
     render::Request request;
     request.scene = std::make_shared<const scene::Scene>(std::move(*scene));
     request.camera = request.scene->cameras.front();
-    request.transport.mode = mode;
-    request.transport.wavelengthsNm = reference.nm;
     request.transport.photonGrid = 1024;
     request.transport.mapSize = 1024;
     request.target = render::Target::Spectral;
     request.sample = render::Sample::F32;
-    request.wavelengthBands = true;
-    const render::Frame frame = pipeline.run(request);
-    EXPECT_EQ(frame.wavelengthsNm, reference.nm);
+    return request;
+}
+
+render::Frame run(const render::Request& request) {
+    static const auto context = gl::Context::create({.gpu = "software"});
+    static gl::ShaderLibrary shaders;
+    static render::Pipeline pipeline(*context, shaders);
+    render::Frame frame = pipeline.run(request);
     EXPECT_THAT(gl::takeDebugMessages(), testing::IsEmpty());
+    return frame;
+}
+
+image::Comparison compareScene(const std::string& name, render::Mode mode = render::Mode::Refined, int sphereLevels = 4) {
+    const reference::Reference reference = reference::load(name);
+    render::Request request = mapOf(reference, name, sphereLevels);
+    request.transport.mode = mode;
+    request.transport.wavelengthsNm = reference.nm;
+    request.wavelengthBands = true;
+    const render::Frame frame = run(request);
+    EXPECT_EQ(frame.wavelengthsNm, reference.nm);
 
     const image::Comparison result = image::compare(image::floorIrradiance(frame, reference, 8), reference);
     std::printf("%s%s: relative L1 %.4f, flux ratio %.4f (worst wavelength %.4f), worst centroid %.3f cells\n",
@@ -60,6 +70,29 @@ TEST(Reference, Prism) {
     EXPECT_LE(result.relativeL1, 0.03);
     EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
     EXPECT_LE(result.worstCentroidCells, 1.0);
+}
+
+// Luminance against the whole spectrum, in the same fit of the colour matching functions on both sides. Seven exact
+// wavelengths are .13 away.
+TEST(Reference, PrismInAContinuousSpectrum) {
+    const reference::Reference reference = reference::load("prism");
+    ASSERT_TRUE(reference.xyz);
+    render::Request request = mapOf(reference, "prism");
+    request.transport.wavelengths = render::kContinuous;
+    request.observer = optics::Observer::Wyman2013;
+    const std::vector<float> rgb = image::floorIrradiance(run(request), reference, 8);
+    const glm::dmat3 toXyz = glm::inverse(optics::xyzToRgb(request.observer));
+    const std::size_t cells = rgb.size() / 3;
+    double difference = 0.0, sum = 0.0, expected = 0.0;
+    for (std::size_t i = 0; i < cells; ++i) {
+        const double Y = (toXyz * glm::dvec3(rgb[i], rgb[cells + i], rgb[2 * cells + i])).y;
+        const double known = reference.xyz->values[cells + i];
+        difference += std::abs(Y - known);
+        sum += Y, expected += known;
+    }
+    std::printf("prism, continuous: luminance's relative L1 %.4f, flux ratio %.4f\n", difference / expected, sum / expected);
+    EXPECT_LE(difference / expected, 0.02);
+    EXPECT_NEAR(sum / expected, 1.0, 0.01);
 }
 
 // Two interfaces cannot do better than .308 here: a faceted stone needs its internal reflections, which this transport

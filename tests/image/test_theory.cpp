@@ -1,4 +1,5 @@
 // What must hold whatever the scene: white stays white, glass that is air is not there, light adds up.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -21,12 +22,12 @@ class Theory : public ImageTest {
 };
 
 TEST_F(Theory, WhiteStaysWhite) {
-    for (const int wavelengths : {7, 21}) {
+    for (const int wavelengths : {7, 21, render::kContinuous}) {
         render::Request request = mapRequest(sphereScene(optics::Cauchy{1.5, 0.0}));
         request.transport.wavelengths = wavelengths;
         request.transport.forceDispersive = true;
         const render::Frame frame = pipeline().run(request);
-        ASSERT_EQ(frame.wavelengthsNm.size(), std::size_t(wavelengths));
+        ASSERT_EQ(frame.wavelengthsNm.size(), std::size_t(wavelengths == render::kContinuous ? 4 : wavelengths));
         const std::vector<float> map = floats(frame);
         float brightest = 0.0f, worst = 0.0f;
         for (std::size_t i = 0; i < map.size(); i += 3) {
@@ -36,6 +37,43 @@ TEST_F(Theory, WhiteStaysWhite) {
         }
         EXPECT_LE(worst, 1e-3f) << wavelengths << " wavelengths";
         EXPECT_GT(brightest, 5.0f);
+    }
+}
+
+// A narrow beam through a wedge, spread over many times its own width: each row and column of the map that the rainbow
+// lights is lit without a break.
+TEST_F(Theory, ARainbowHasNoGaps) {
+    for (const double B : {0.02, 0.6}) {
+        tests::SyntheticScene parts;
+        addFloor(parts);
+        const glm::vec3 a(-0.1f, 1.5f, -0.1f), b(0.1f, 1.5f, -0.1f), c(0.1f, 1.5f, 0.1f), d(-0.1f, 1.5f, 0.1f);
+        const glm::vec3 e = a + glm::vec3(0, 0.02f, 0), f = b + glm::vec3(0, 0.05f, 0), g = c + glm::vec3(0, 0.05f, 0), h = d + glm::vec3(0, 0.02f, 0);
+        parts.addFlat(parts.material(glassOf(optics::Cauchy{1.458, B})),
+                      {a, b, c, a, c, d, e, h, g, e, g, f, a, e, f, a, f, b, b, f, g, b, g, c, c, g, h, c, h, d, d, h, e, d, e, a});
+        render::Request request = mapRequest(finish(parts, spotAbove({0, 3, 0}, {0, 1.5f, 0}, 0.8f)));
+        request.transport.mapSize = 512;
+        const render::Frame frame = pipeline().run(request);
+        EXPECT_LE(ledgerGap(frame.stats.ledger), 1e-4);
+        const std::vector<float> map = floats(frame);
+        const float brightest = *std::max_element(map.begin(), map.end());
+        int lit = 0, unlit = 0;
+        for (const bool column : {false, true}) {
+            for (int line = 0; line < frame.height; ++line) {
+                int first = -1, last = -1, between = 0, dark = 0;
+                for (int i = 0; i < frame.width; ++i) {
+                    const int texel = column ? i * frame.width + line : line * frame.width + i;
+                    const float* rgb = &map[std::size_t(3 * texel)];
+                    const float light = std::max({rgb[0], rgb[1], rgb[2]}) / brightest;
+                    if (light > 1e-4f && first < 0) first = i;
+                    if (light > 1e-4f) last = i, between += dark, dark = 0;
+                    if (light < 1e-6f && first >= 0) ++dark;   // fixed point ends there
+                }
+                lit += last - first;
+                unlit += between;
+            }
+        }
+        EXPECT_GT(lit, 20000) << "B = " << B;
+        EXPECT_EQ(unlit, 0) << "B = " << B;
     }
 }
 

@@ -199,7 +199,7 @@ State fullState() {
     state.camera = {Vec3{0, 1, 3}, Vec3{0, 0.5, 0}, Vec3{0, 0, 1}, 35.0, -2.5};
     state.environmentColor = Vec3{0.1, 0.2, 0.3};
     state.outsideIndex = 1.333;
-    state.transport = {TransportMode::Refined, 7, {450, 550, 650}, 1024, 1024, 2, 12, true, false, true, 6, 16.5, 0.0};
+    state.transport = {TransportMode::Refined, kContinuous, {450, 550, 650}, 1024, 1024, 2, 12, true, false, true, 6, 16.5, 0.0};
     state.stream = {Target::Pass, "photon_list", Encoding::Png, Sample::U8, true, 640, 480, 85, 30.0};
     return state;
 }

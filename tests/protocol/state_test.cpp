@@ -23,7 +23,7 @@ TEST(State, AnEmptyDocumentIsEveryDefault) {
         R"("stream":{"bands":"rgb","encoding":"jpeg","height":512,"max_fps":60.0,"quality":["auto"],"sample":"u8",)"
         R"("target":"composite","width":512},"transport":{"back_steps":4,"budget_ms":0.0,"filter":true,)"
         R"("force_dispersive":false,"gap_fill":false,"hierarchy_levels":3,"map_size":512,"mode":"refined","photon_grid":0,)"
-        R"("receiver_steps":6,"target_error":0.0,"wavelengths":7}})");
+        R"("receiver_steps":6,"target_error":0.0,"wavelengths":"continuous"}})");
 }
 
 TEST(State, EveryFieldComesBack) {

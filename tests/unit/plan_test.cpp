@@ -50,7 +50,8 @@ TEST(Plan, RunsAllThatADispersiveCasterNeeds) {
     for (const char* pass : kLightPasses) EXPECT_TRUE(row(plan, pass).run) << pass;
     for (const char* pass : kCameraPasses) EXPECT_TRUE(row(plan, pass).run) << pass;
     EXPECT_FALSE(row(plan, "gap_fill").run);
-    EXPECT_EQ(plan.wavelengths, 7);
+    EXPECT_EQ(plan.wavelengths, 4);   // nodes of the continuous spectrum
+    EXPECT_TRUE(plan.continuous);
     for (const PlanEntry& entry : plan.entries) {
         EXPECT_FALSE(entry.reason.empty()) << entry.pass;
         EXPECT_THAT(entry.without, Each(Not(""))) << entry.pass;
@@ -126,7 +127,7 @@ TEST(Plan, WithoutDispersionOneWavelength) {
     request.transport.gapFill = true;
     EXPECT_THAT(row(makePlan(facts, request), "gap_fill").reason, HasSubstr("one wavelength leaves no gaps"));
     request.transport.forceDispersive = true;
-    EXPECT_EQ(makePlan(facts, request).wavelengths, 7);
+    EXPECT_EQ(makePlan(facts, request).wavelengths, 4);
     EXPECT_TRUE(makePlan(facts, request).runs("gap_fill"));
     facts.casters = facts.castersLit = 0;
     EXPECT_THAT(row(makePlan(facts, request), "gap_fill").reason, HasSubstr("no caster"));
