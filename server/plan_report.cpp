@@ -43,7 +43,13 @@ T checked(tl::expected<T, protocol::DecodeError> value) {
 render::Request requestOf(const scene::Scene& base, const std::vector<protocol::Setting>& settings) {
     const protocol::State plain;
     const protocol::Json document = session::resolvedDocument(plain, base, base.cameras.front());
-    const protocol::Json patch = checked(protocol::settingsPatch(document, settings));
+    protocol::Json patch = checked(protocol::settingsPatch(document, settings));
+    if (patch.contains("stream") && patch["stream"].is_object() && patch["stream"].value("target", protocol::Json()) == "spectral") {
+        // As a map travels, unless the settings say otherwise
+        protocol::Json stream = {{"encoding", "raw"}, {"sample", "f32"}};
+        protocol::extendPatch(stream, patch["stream"]);
+        patch["stream"] = stream;
+    }
     const protocol::Applied applied = checked(protocol::applyPatch(protocol::toJson(plain), patch, {}, true));
     auto scene = std::make_shared<const scene::Scene>(checked(session::withOverrides(base, applied.state)));
     return checked(resolveRequest(applied.state, std::move(scene))).request;
