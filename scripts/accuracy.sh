@@ -65,6 +65,7 @@ for part in "${parts[@]}"; do
     case "$part" in
         error-vs-time) "$bench" error-vs-time --out "$out" "${quick[@]}" "${fresh[@]}" ;;
         vs-thesis) "$bench" error-vs-time --vs-thesis --out "$out/vs-thesis" "${quick[@]}" "${fresh[@]}" && cp "$out/vs-thesis/vs-thesis.md" "$out" ;;
+        estimate) { echo '```text'; "$bench" estimate | tee /dev/stderr; echo '```'; } >"$out/estimate.md" ;;
         *) "$bench" "$part" --markdown "$out/$part.md" ;;
     esac
     [[ ${#quick[@]} -eq 0 ]] || continue
