@@ -29,7 +29,7 @@ double index(const Sellmeier& d, double um) {
     double nSquared = 1.0;
     for (int i = 0; i < 3; ++i)
         if (d.B[i] != 0.0) nSquared += d.B[i] * square(um) / (square(um) - d.C_um2[i]);
-    return std::sqrt(std::max(1.0, nSquared));
+    return std::sqrt(std::max(0.0, nSquared));
 }
 
 bool disperses(const ConstantIndex&) {

@@ -43,8 +43,15 @@ tl::expected<optics::Dispersion, LoadError> readDispersion(const tinygltf::Mater
     return optics::ConstantIndex{ior};
 }
 
+// At every nm, as a polynomial may leave the range between any few; a resonance does so within less.
 bool indexInRange(const optics::Dispersion& dispersion) {
-    for (double nm : {optics::kBandMinNm, 0.5 * (optics::kBandMinNm + optics::kBandMaxNm), optics::kBandMaxNm}) {
+    constexpr double kMinUm2 = optics::kBandMinNm * optics::kBandMinNm * 1e-6, kMaxUm2 = optics::kBandMaxNm * optics::kBandMaxNm * 1e-6;
+    if (const auto* sellmeier = std::get_if<optics::Sellmeier>(&dispersion)) {
+        for (int i = 0; i < 3; ++i) {
+            if (sellmeier->B[i] != 0.0 && sellmeier->C_um2[i] >= kMinUm2 && sellmeier->C_um2[i] <= kMaxUm2) return false;
+        }
+    }
+    for (double nm = optics::kBandMinNm; nm <= optics::kBandMaxNm; nm += 1.0) {
         const double n = optics::refractiveIndex(dispersion, nm);
         if (!(n >= kMinIndex && n <= kMaxIndex)) return false;
     }

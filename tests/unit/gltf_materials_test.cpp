@@ -70,6 +70,12 @@ TEST(GltfMaterial, ExtrasThatMakeNoSenseAreErrors) {
     EXPECT_NE(errorOf(extras({{"cauchy", {0.5, 0.0}}})).find("refractive index"), std::string::npos);
     EXPECT_NE(errorOf(extras({{"cauchy", {1.5, 1e300}}})).find("refractive index"), std::string::npos);
     EXPECT_NE(errorOf(extras({{"sellmeier", {1.0, 2.0}}})).find("sellmeier"), std::string::npos);
+    // Fine at both ends of the band and in its middle, not between: a resonance at 450 nm, one too thin to be sampled, a
+    // polynomial that dips below 1, an imaginary index
+    EXPECT_NE(errorOf(extras({{"sellmeier", {1.0, 0.01, 0.0, 0.01, 0.2025, 0.0}}})).find("refractive index"), std::string::npos);
+    EXPECT_NE(errorOf(extras({{"sellmeier", {1.0, 1e-9, 0.0, 0.01, 0.20295025, 0.0}}})).find("refractive index"), std::string::npos);
+    EXPECT_NE(errorOf(extras({{"cauchy", {3.82, -1.13, 0.113}}})).find("refractive index"), std::string::npos);
+    EXPECT_NE(errorOf(extras({{"sellmeier", {-2.0, 0.0, 0.0, 0.0, 0.0, 0.0}}})).find("refractive index"), std::string::npos);
     EXPECT_NE(errorOf(extras({{"absorption", {{380}, {0.1, 0.3}}}})).find("absorption"), std::string::npos);
     EXPECT_NE(errorOf(extras({{"absorption", {{680, 380}, {0.1, 0.3}}}})).find("absorption"), std::string::npos);
     EXPECT_NE(errorOf(extras({{"absorption", {{380, 680}, {0.1, -0.3}}}})).find("absorption"), std::string::npos);
