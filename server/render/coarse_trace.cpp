@@ -54,6 +54,9 @@ struct CoarseTrace::Impl {
 
     std::optional<Hit> intersect(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction,
                                  float from) const {
+        // Embree takes no ray without a direction: what came to nothing in float arithmetic meets nothing.
+        const auto finite = [](const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+        if (!finite(origin) || !finite(direction)) return std::nullopt;
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         RTCRayHit ray{};
@@ -72,16 +75,26 @@ struct CoarseTrace::Impl {
         const auto& vertices = geometry->vertices;
         const glm::vec3 normal = (1.0f - ray.hit.u - ray.hit.v) * vertices[corner[0]].normal +
                                  ray.hit.u * vertices[corner[1]].normal + ray.hit.v * vertices[corner[2]].normal;
-        return Hit{ray.ray.tfar, glm::normalize(normal)};
+        if (glm::dot(normal, normal) > 1e-12f) return Hit{ray.ray.tfar, glm::normalize(normal)};
+        // Normals that cancel out between opposite ones: the triangle's own
+        const glm::vec3 flat(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
+        const float length = glm::length(flat);
+        return length > 0.0f ? std::optional(Hit{ray.ray.tfar, flat / length}) : std::nullopt;
     }
 };
 
+float coneVersine(float halfAngleDeg) {
+    const double sine = std::sin(0.5 * glm::radians(static_cast<double>(halfAngleDeg)));
+    return static_cast<float>(2.0 * sine * sine);
+}
+
 float coneFalloff(const scene::Light& light, const glm::vec3& direction) {
     if (light.type != scene::LightType::Spot) return 1.0f;
-    const float cosAngle = glm::dot(direction, light.direction);
-    const float cosInner = std::cos(glm::radians(light.innerConeDeg)), cosOuter = std::cos(glm::radians(light.outerConeDeg));
-    if (cosInner - cosOuter < 1e-6f) return cosAngle >= cosOuter ? 1.0f : 0.0f;
-    const float t = glm::clamp((cosAngle - cosOuter) / (cosInner - cosOuter), 0.0f, 1.0f);
+    const glm::vec3 off = direction - light.direction;
+    const float versine = 0.5f * glm::dot(off, off);
+    const float inner = coneVersine(light.innerConeDeg), outer = coneVersine(light.outerConeDeg), ramp = outer - inner;
+    if (ramp <= 1e-6f * outer) return versine <= outer ? 1.0f : 0.0f;
+    const float t = glm::clamp((outer - versine) / ramp, 0.0f, 1.0f);
     return t * t;
 }
 

@@ -15,6 +15,9 @@ struct Landing {
     int photon = 0;       // of the grid that it was traced in; its wavelengths follow each other
 };
 
+// 1 - cosine of a cone's half angle, exact for the narrowest.
+float coneVersine(float halfAngleDeg);
+
 // Fraction of the on-axis intensity that a spot sends along unit `direction` (KHR_lights_punctual); 1 for other lights.
 float coneFalloff(const scene::Light& light, const glm::vec3& direction);
 

@@ -5,8 +5,8 @@ struct Light {
     vec3 position;      // world, m; unused when directional
     vec3 direction;     // unit, the way the light travels
     vec3 rgb;           // candela (or lux) times colour, over the reference irradiance
-    float cosOuter;     // below -1: no cone
-    float coneScale;    // 1 / (cos inner - cos outer); 0: a hard edge
+    float versineOuter; // 1 - cosine of the outer half angle; above 2: no cone
+    float coneScale;    // 1 / (outer - inner versine); 0: a hard edge
     bool directional;
 };
 
@@ -20,8 +20,9 @@ vec4 towardsLight(Light light, vec3 posWorld) {
 
 // KHR_lights_punctual: squared ramp in the cosine between inner and outer cone. A hard edge is one pixel wide.
 float coneFactor(Light light, vec3 toLight) {
-    float c = -dot(light.direction, toLight) - light.cosOuter;
-    float pixel = max(fwidth(c), 1e-7);
+    vec3 off = light.direction + toLight;
+    float c = light.versineOuter - 0.5 * dot(off, off);   // as emission.glsl does it, and why
+    float pixel = max(fwidth(c), 1e-12);
     float soft = clamp(c * light.coneScale, 0.0, 1.0);
     return light.coneScale > 0.0 ? soft * soft : clamp(c / pixel + 0.5, 0.0, 1.0);
 }

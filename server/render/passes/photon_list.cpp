@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "render/coarse_trace.h"
 #include "shaders/shared/layout.h"
 
 namespace caustream::render {
@@ -13,8 +14,7 @@ void setEmission(const gl::Uniforms& uniforms, const scene::Light& light, const 
     const bool cone = light.type == scene::LightType::Spot;
     const float outer = glm::radians(light.outerConeDeg);
     uniforms.set("u_lightAxis", toView * light.direction)
-        .set("u_coneCos", cone ? glm::vec2(std::cos(glm::radians(light.innerConeDeg)), std::cos(outer))
-                               : glm::vec2(-2.0f, -3.0f));
+        .set("u_coneVersine", cone ? glm::vec2(coneVersine(light.innerConeDeg), coneVersine(light.outerConeDeg)) : glm::vec2(3.0f, 4.0f));
     if (!cookie) return;
     // Cookie plane: x right and y up of the light's own frame, z along its axis; the outer cone spans -1..1.
     const glm::mat3 own(lookAlong(glm::vec3(0.0f), light.direction, glm::vec3(0, 1, 0)));
