@@ -30,8 +30,22 @@ struct Rect {
 
 bool parallel(const scene::Light& light) { return light.type == scene::LightType::Directional; }
 
-// View of the light along `forward`; a directional light looks from outside the scene's bounds, through `through`.
-View frame(const scene::Scene& scene, const scene::Light& light, const glm::vec3& through) {
+// How far before and behind the point it looks through a parallel view reaches, m.
+struct Span {
+    float before, behind;
+};
+Span wholeScene(const scene::Scene& scene) {
+    const float reach = std::max(scene.geometry->bounds.radius(), 1e-6f);
+    return {3.0f * reach, 3.0f * reach};
+}
+// Just the caster: in a wide scene, a view from outside of it would have few digits left for a small caster.
+Span around(const scene::Object& caster) {
+    const float reach = 2.0f * std::max(caster.bounds.radius(), 1e-6f);
+    return {reach, reach};
+}
+
+// View of the light along `forward`, through `through`; a directional light looks from `span.before` before it.
+View frame(const scene::Scene& scene, const scene::Light& light, const glm::vec3& through, const Span& span) {
     View view;
     view.perspective = !parallel(light);
     const float reach = std::max(scene.geometry->bounds.radius(), 1e-6f);
@@ -42,10 +56,10 @@ View frame(const scene::Scene& scene, const scene::Light& light, const glm::vec3
         view.worldToView = lookAlong(light.position, forward, glm::vec3(0, 1, 0));
         view.nearM = kNearShare * std::max(distance, 1e-3f * reach);
     } else {
-        view.worldToView = lookAlong(through - 3.0f * reach * light.direction, light.direction, glm::vec3(0, 1, 0));
+        view.worldToView = lookAlong(through - span.before * light.direction, light.direction, glm::vec3(0, 1, 0));
         view.nearM = 0.0f;
     }
-    view.farM = 6.0f * reach;
+    view.farM = view.perspective ? 6.0f * reach : span.before + span.behind;
     return view;
 }
 
@@ -111,10 +125,10 @@ Rect coneRect(const scene::Light& light, const View& view) {
 }
 
 // Moves the view's axis into the middle of `rect`, given in its image.
-View recentre(const scene::Scene& scene, const scene::Light& light, const View& view, const Rect& rect, float distance) {
+View recentre(const scene::Scene& scene, const scene::Light& light, const View& view, const Rect& rect, float distance, const Span& span) {
     const glm::vec2 c = rect.centre();
     const glm::vec4 through = view.perspective ? glm::vec4(c * distance, -distance, 1) : glm::vec4(c, -distance, 1);
-    return frame(scene, light, glm::vec3(glm::affineInverse(view.worldToView) * through));
+    return frame(scene, light, glm::vec3(glm::affineInverse(view.worldToView) * through), span);
 }
 
 glm::vec2 halfExtentAround(const Rect& rect) {
@@ -124,6 +138,19 @@ glm::vec2 halfExtentAround(const Rect& rect) {
 // Turns the view about its axis.
 View rolled(View view, float angle) {
     view.worldToView = glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0, 0, 1)) * view.worldToView;
+    return view;
+}
+
+// Nothing of the caster is nearer than the near plane, however close the light stands to it. A layer value is near / z in
+// float: a near plane that is near costs no digits.
+View reachingTo(const scene::Scene& scene, const scene::Object& caster, View view) {
+    if (!view.perspective) return view;
+    float nearest = 2.0f * view.nearM;
+    const auto& geometry = *scene.geometry;
+    for (std::uint32_t i = 0; i < caster.indexCount; ++i) {
+        nearest = std::min(nearest, -view.toView(geometry.vertices[geometry.indices[caster.firstIndex + i]].position).z);
+    }
+    view.nearM = std::max(0.5f * nearest, 1e-4f * view.nearM);
     return view;
 }
 
@@ -180,11 +207,25 @@ float depthSpread(const View& view, std::span<const Landing> landings) {
     return flux * squares / std::max(sum * sum, 1e-30f) - 1.0f;
 }
 
+// From before the casters to well beyond where a coarse trace landed, but no farther than the scene reaches.
+Span aroundLandings(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings, const glm::vec3& mean) {
+    const scene::Bounds& casters = scene.geometry->casterBounds.empty() ? scene.geometry->bounds : scene.geometry->casterBounds;
+    float before = glm::dot(mean - casters.centre(), light.direction), behind = 0.0f;
+    for (const Landing& landing : landings) {
+        const float along = glm::dot(landing.position - mean, light.direction);
+        before = std::max(before, -along), behind = std::max(behind, along);
+    }
+    const Span whole = wholeScene(scene);
+    const float slack = 2.0f * std::max(casters.radius(), 1e-6f);
+    return {std::min(before + slack, whole.before), std::min(4.0f * behind + before + slack, whole.behind)};
+}
+
 }  // namespace
 
 std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster) {
     if (outsideCone(light, caster.bounds)) return std::nullopt;
-    View view = frame(scene, light, caster.bounds.centre());
+    const Span span = around(caster);
+    View view = frame(scene, light, caster.bounds.centre(), span);
     for (int pass = 0;; ++pass) {
         Rect rect = vertexRect(scene, caster, view);
         const Rect cone = coneRect(light, view);
@@ -192,16 +233,16 @@ std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& 
         if (rect.empty()) return std::nullopt;
         if (pass == 2) {
             view.halfExtent = halfExtentAround(rect);
-            return view;
+            return reachingTo(scene, caster, view);
         }
-        view = recentre(scene, light, view, rect, std::max(-view.toView(caster.bounds.centre()).z, view.nearM));
+        view = recentre(scene, light, view, rect, std::max(-view.toView(caster.bounds.centre()).z, view.nearM), span);
     }
 }
 
 View backView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster) {
-    View view = frame(scene, light, caster.bounds.centre());
+    View view = frame(scene, light, caster.bounds.centre(), around(caster));
     view.halfExtent = 1.02f * halfExtentAround(vertexRect(scene, caster, view));
-    return view;
+    return reachingTo(scene, caster, view);
 }
 
 std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings) {
@@ -212,7 +253,8 @@ std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& 
     mean /= flux;
 
     // The roll whose rectangle is smallest, then its middle on the axis.
-    const View upright = frame(scene, light, mean);
+    const Span span = aroundLandings(scene, light, landings, mean);
+    const View upright = frame(scene, light, mean, span);
     const float distance = std::max(-upright.toView(mean).z, upright.nearM);
     float bestArea = std::numeric_limits<float>::max(), roll = 0.0f;
     Rect best;
@@ -225,13 +267,13 @@ std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& 
     }
     if (bestArea == std::numeric_limits<float>::max()) return std::nullopt;
     MapViews views;
-    views.inner = rolled(recentre(scene, light, rolled(upright, roll), best, distance), roll);
+    views.inner = rolled(recentre(scene, light, rolled(upright, roll), best, distance, span), roll);
     const Rect rect = landingRect(views.inner, landings, kLeftOutShare), all = landingRect(views.inner, landings, 0.0);
     if (rect.min.x > rect.max.x) return std::nullopt;
 
     // A few hundred photons end before the caustic does: half a step of their grid wider.
     constexpr float kMargin = 1.05f;
-    const float least = 1e-4f * (views.inner.perspective ? 1.0f : scene.geometry->bounds.radius());
+    const float least = 1e-4f * (views.inner.perspective ? 1.0f : span.before);
     const float widest = views.inner.perspective ? kWidestTangent : 3.0f * scene.geometry->bounds.radius();
     views.inner.halfExtent = glm::clamp(kMargin * halfExtentAround(rect), glm::vec2(least), glm::vec2(widest));
     views.landing = mean;
@@ -244,13 +286,14 @@ View shadowView(const scene::Scene& scene, const scene::Light& light) {
     const scene::Bounds& casters = scene.geometry->casterBounds;
     const scene::Bounds& target = casters.empty() ? scene.geometry->bounds : casters;
     if (light.type == scene::LightType::Spot) {
-        View view = frame(scene, light, light.position + light.direction * std::max(glm::length(target.centre() - light.position), 1e-3f));
+        View view = frame(scene, light, light.position + light.direction * std::max(glm::length(target.centre() - light.position), 1e-3f * target.radius()),
+                          wholeScene(scene));
         view.halfExtent = glm::vec2(std::min(std::tan(glm::radians(std::min(light.outerConeDeg, 80.0f))) * 1.01f, kWidestTangent));
         return view;
     }
-    View view = frame(scene, light, target.centre());
+    View view = frame(scene, light, target.centre(), wholeScene(scene));
     view.halfExtent = glm::vec2(view.perspective ? 1.2f : 1.01f * scene.geometry->bounds.radius());
-    if (!view.perspective) view.worldToView = frame(scene, light, scene.geometry->bounds.centre()).worldToView;
+    if (!view.perspective) view.worldToView = frame(scene, light, scene.geometry->bounds.centre(), wholeScene(scene)).worldToView;
     return view;
 }
 
@@ -276,7 +319,7 @@ View wholeView(const scene::Scene& scene, const scene::Light& light, std::span<c
     float leastSpread = std::numeric_limits<float>::max();
     for (int i = 0; i <= turns; ++i) {
         const glm::mat3 turned(i > 0 ? glm::rotate(glm::mat4(1.0f), glm::radians(5.0f * static_cast<float>(i)), turn) : glm::mat4(1.0f));
-        View view = frame(scene, light, cone.perspective ? light.position + turned * along : mean / all);
+        View view = frame(scene, light, cone.perspective ? light.position + turned * along : mean / all, wholeScene(scene));
         Rect rect = landingRect(view, landings, kLeftOutShare);
         for (const View& emission : emissions) addCorners(emission, view, rect);
         const glm::vec2 half = 1.05f * halfExtentAround(rect);

@@ -91,7 +91,9 @@ View cameraView(const scene::Camera& camera, const scene::Scene& scene, int widt
     view.worldToView = lookAlong(camera.eye, distance > 0.0f ? towards / distance : glm::vec3(0, 0, -1), camera.up);
     const float tangent = std::tan(0.5f * glm::radians(camera.fovYDeg));
     view.halfExtent = glm::vec2(tangent * static_cast<float>(width) / static_cast<float>(height), tangent);
-    view.nearM = 1e-3f * std::max(scene.geometry->bounds.radius(), 1e-6f);
+    // Of what the camera looks at, which may be small in a wide scene
+    const float reach = std::max(scene.geometry->bounds.radius(), 1e-6f);
+    view.nearM = 1e-3f * (distance > 0.0f ? std::clamp(distance, 1e-6f * reach, reach) : reach);
     view.farM = 1e6f * view.nearM;
     return view;
 }

@@ -21,7 +21,10 @@ void CasterLayers::run(const Inputs& in, Side side, gl::Texture& layer) {
     in.scene.bind();
     if (in.drawOccluders) {
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        // A parallel view begins just before the caster; what stands farther before it hides it all the same.
+        if (!in.view.perspective) glEnable(GL_DEPTH_CLAMP);
         in.drawOccluders();
+        glDisable(GL_DEPTH_CLAMP);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
     glEnable(GL_CULL_FACE);
