@@ -59,9 +59,14 @@ float share(float flux, float weight, int passed, vec2 reflectance, float absorp
     return through * (1.0 - reflectance.y);
 }
 
+// What is added before rounding down, in 0..1: alike photons would all be rounded the same way, and four million of them
+// add up to 1e-3 of the flux. The golden ratio's multiples spread evenly; a texel has its own, so that bits repeat.
+float g_rounding = 0.5;
+void roundBy(uint texel) { g_rounding = float((texel * 2654435769u) >> 8) / 16777216.0; }
+
 void book(int row, float flux) {
     uint bank = (gl_WorkGroupID.x % uint(kLedgerBanks)) * uint(kLedgerRows);
-    if (flux > 0.0) atomicAdd(ledger[bank + uint(row)], uint(flux * u_ledgerPerFlux + 0.5));
+    if (flux > 0.0) atomicAdd(ledger[bank + uint(row)], uint(flux * u_ledgerPerFlux + g_rounding));
 }
 
 void book(Tally tally) {

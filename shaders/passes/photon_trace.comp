@@ -54,6 +54,7 @@ void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= retryCount) return;
     uvec4 retry = retries[item];
+    roundBy(retry.x);
     ivec2 size = textureSize(u_front, 0);
     ivec2 texel = ivec2(retry.x % uint(size.x), retry.x / uint(size.x));
     photonHalf = halfOf(texel);
@@ -110,6 +111,7 @@ void main() {
     if (photon >= count) return;
     ivec2 size = textureSize(u_front, 0);
     uint index = texels[photon];
+    roundBy(index);
     ivec2 texel = ivec2(index % uint(size.x), index / uint(size.x));
     photonHalf = halfOf(texel);
     Entry entry = entryAt(texel);
