@@ -10,6 +10,7 @@ void addEstimate(CLI::App& app);      // the error estimate beside the true erro
 void addFrame(CLI::App& app);         // render times in this process
 void addOmissions(CLI::App& app);     // what leaving out saves
 void addReference(CLI::App& app);     // exact maps from the CPU
+void addStability(CLI::App& app);     // stiff, extreme and random scenes
 void addStream(CLI::App& app);        // what the socket adds
 
 }  // namespace caustream::bench

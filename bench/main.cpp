@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     addFrame(app);
     addOmissions(app);
     addReference(app);
+    addStability(app);
     addStream(app);
     try {
         app.parse(argc, argv);   // runs the command

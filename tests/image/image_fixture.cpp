@@ -1,8 +1,7 @@
 #include "tests/image/image_fixture.h"
 
 #include <cmath>
-#include <cstring>
-#include <glm/trigonometric.hpp>
+#include <glm/geometric.hpp>
 
 #include "gl/context.h"
 #include "gl/debug.h"
@@ -33,43 +32,6 @@ std::unique_ptr<render::Pipeline> ImageTest::freshPipeline() {
     return std::make_unique<render::Pipeline>(*renderer().context, renderer().shaders);
 }
 
-render::Request mapRequest(const scene::Scene& scene) {
-    render::Request request;
-    request.scene = std::make_shared<const scene::Scene>(scene);
-    request.camera = scene.cameras.front();
-    request.transport.photonGrid = request.transport.mapSize = 128;
-    request.target = render::Target::Spectral;
-    request.sample = render::Sample::F32;
-    request.width = request.height = 128;
-    return request;
-}
-
-render::Request pictureRequest(const scene::Scene& scene, render::Sample sample) {
-    render::Request request = mapRequest(scene);
-    request.target = render::Target::Composite;
-    request.sample = sample;
-    request.exposureEv = 0.0f;
-    return request;
-}
-
-std::vector<float> floats(const render::Frame& frame) {
-    std::vector<float> values(frame.pixels.size() / sizeof(float));
-    std::memcpy(values.data(), frame.pixels.data(), values.size() * sizeof(float));
-    return values;
-}
-
-bool allFinite(const std::vector<float>& values) {
-    for (const float value : values) {
-        if (!std::isfinite(value)) return false;
-    }
-    return true;
-}
-
-double ledgerGap(const render::EnergyLedger& l) {
-    const double gone = l.deposited + l.absorbed + l.reflected + l.totalReflection + l.rejected + l.leftMap + l.noReceiver;
-    return l.onCasters > 0.0 ? std::abs(l.onCasters - gone) / l.onCasters : gone;
-}
-
 std::vector<double> floorLight(const render::Frame& frame, const scene::Light& light, double half, int cells) {
     constexpr int kSamples = 48;   // several in a texel, or a focus is missed
     const std::vector<float> map = floats(frame);
@@ -90,49 +52,6 @@ std::vector<double> floorLight(const render::Frame& frame, const scene::Light& l
         }
     }
     return sums;
-}
-
-scene::Scene finish(const tests::SyntheticScene& parts, const scene::Light& light) {
-    scene::Scene scene;
-    scene.name = "test";
-    auto geometry = std::make_shared<scene::Geometry>(*parts.geometry());
-    for (const scene::Object& object : geometry->objects) {
-        if (parts.materials[static_cast<std::size_t>(object.material)].caster) geometry->casterBounds.add(object.bounds);
-    }
-    scene.geometry = geometry;
-    scene.materials = parts.materials;
-    scene.lights = {light};
-    scene::Camera camera;
-    camera.eye = {0, 2, 3};
-    scene.cameras = {camera};
-    return scene;
-}
-
-scene::Material glassOf(const optics::Dispersion& dispersion) {
-    scene::Material material;
-    material.caster = true;
-    material.dispersion = dispersion;
-    return material;
-}
-
-scene::Material white() { return {}; }
-
-void addFloor(tests::SyntheticScene& parts) { parts.addQuad(parts.material(white()), {-5, 0, 5}, {10, 0, 0}, {0, 0, -10}); }
-
-scene::Light spotAbove(const glm::vec3& position, const glm::vec3& target, float halfAngleDeg) {
-    scene::Light light;
-    light.name = "key";
-    light.position = position;
-    light.direction = glm::normalize(target - position);
-    light.innerConeDeg = light.outerConeDeg = halfAngleDeg;
-    return light;
-}
-
-scene::Scene sphereScene(const optics::Dispersion& dispersion) {
-    tests::SyntheticScene parts;
-    parts.addSphere(parts.material(glassOf(dispersion)), {0, 0.5f, 0}, 0.3f);
-    addFloor(parts);
-    return finish(parts, spotAbove({0.5f, 2.5f, 0.3f}, {0, 0.5f, 0}, 12.0f));
 }
 
 }  // namespace caustream::image
