@@ -8,7 +8,7 @@ const float kOneSurface = 2e-3;                 // of the depth: the middle of t
 const int kMostSamples = 12;                    // of a photon's spectrum
 const int kSampleRoom = kMostSamples + 1 + kMostNodes;   // the first and the last are parts, and so where intervals are left out
 const float kSparse = 4.0;                      // texels of a sample beyond which it is spread over wider ones
-const int kTracedSamples = 4;                   // of an interval that cannot be interpolated
+const int kTracedSamples = 3;                   // of an interval that cannot be interpolated
 
 int intervals() { return u_wavelengths - 1; }
 
@@ -36,6 +36,14 @@ struct Held {
     vec3 amount;       // fixed-point units
 };
 
+// Spread as wide as the samples lie apart: a jump to another surface is no gap, so the nearer neighbour counts.
+void depositHeld(Held held, float apart, float ownLevel, ivec2 innerSize) {
+    float gap = min(apart > 0.0 ? apart : held.apart, held.apart > 0.0 ? held.apart : apart);
+    Level level = levelOf(clamp(max(ownLevel, log2(max(gap, 1e-3))), 0.0, float(u_levels - 1)), innerSize);
+    deposit(placeAt(held.at, level.fineSize, level.fineFirst), held.amount * (1.0 - level.coarseShare));
+    if (level.coarseShare > 0.0) deposit(placeAt(held.at, level.coarseSize, level.coarseFirst), held.amount * level.coarseShare);
+}
+
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= retryCount) return;
@@ -61,9 +69,9 @@ void main() {
         float first = float(interval) / float(intervals()), last = float(interval + 1) / float(intervals()), from = first;
         vec3 before = spectrumAt(first).xyz;
         // Where neither end lands, one sample of the whole interval (j = 0) is enough unless that lands.
-        for (int j = dark ? 0 : 1; j <= kTracedSamples + 2; ++j) {
+        for (int j = dark ? 0 : 1; j <= kTracedSamples + 1; ++j) {
             Held next = Held(false, vec2(0.0), 0.0, vec3(0.0));
-            bool trial = j == 0, flush = j > kTracedSamples + 1;
+            bool trial = j == 0;
             float to = trial ? last : mix(first, last, min((float(j) - phase) / float(kTracedSamples), 1.0));
             float place = 0.5 * (from + to), way = guess;
             vec3 upTo = spectrumAt(to).xyz, colour = max(upTo - before, vec3(0.0)), exitNormal, origin, ray;
@@ -72,7 +80,7 @@ void main() {
             Tally own = Tally(0.0, 0.0, 0.0);
             float flux = share(entry.flux, colour.y, passed, reflectance, absorptionAt(place), way, own);
             int found = passed == kLeaves ? kLeftView : kRejected;
-            if (passed == kLeaves && !flush) {
+            if (passed == kLeaves) {
                 Meeting met;
                 found = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, next.at, met);
                 next.landed = found == kHit && !trial;
@@ -84,7 +92,7 @@ void main() {
                 }
             }
             bool lost = found != kHit;
-            if ((!trial || lost) && !flush) {
+            if (!trial || lost) {
                 tally = Tally(tally.absorbed + own.absorbed, tally.reflected + own.reflected, tally.total + own.total);
                 rejected += found == kRejected ? colour.y * flux : 0.0;   // nothing is left of what is reflected totally
                 left += found == kLeftView ? colour.y * flux : 0.0;
@@ -93,17 +101,12 @@ void main() {
                 from = to;
             }
             float apart = held.landed && next.landed ? length((next.at - held.at) * vec2(innerSize)) : 0.0;
-            if (held.landed) {
-                // As wide as the samples lie apart on the nearer side: a jump to another surface is no gap.
-                float gap = min(apart > 0.0 ? apart : held.apart, held.apart > 0.0 ? held.apart : apart);
-                Level level = levelOf(clamp(max(ownLevel, log2(max(gap, 1e-3))), 0.0, float(u_levels - 1)), innerSize);
-                deposit(placeAt(held.at, level.fineSize, level.fineFirst), held.amount * (1.0 - level.coarseShare));
-                if (level.coarseShare > 0.0) deposit(placeAt(held.at, level.coarseSize, level.coarseFirst), held.amount * level.coarseShare);
-            }
+            if (held.landed) depositHeld(held, apart, ownLevel, innerSize);
             next.apart = apart;
             held = next;
             if (trial && lost) break;
         }
+        if (held.landed) depositHeld(held, 0.0, ownLevel, innerSize);
     }
     book(tally);
     book(kLedgerRejected, rejected);
