@@ -18,8 +18,9 @@ vec4 spectrumAt(float place) {
     int step = min(int(at), kSpectrumSteps - 1);
     return mix(u_cumulative[step], u_cumulative[step + 1], at - float(step));
 }
-// Where in a sample's width a photon's first one ends: R2 (Roberts 2018), so that neighbours differ evenly.
-float phaseOf(ivec2 texel) { return fract(dot(vec2(texel), vec2(0.75487767, 0.56984029))); }
+// Where in a sample's width a photon's first one ends. Interleaved gradient noise (Jimenez 2014): neighbours differ evenly,
+// and no long period beats against the map's texels.
+float phaseOf(ivec2 texel) { return fract(52.9829189 * fract(dot(vec2(texel), vec2(0.06711056, 0.00583715)))); }
 
 float absorptionAt(float place) {
     float at = place * float(kSpectrumSteps);
