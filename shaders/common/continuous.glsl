@@ -228,6 +228,7 @@ void main() {
     float wanted = clamp(ceil(2.0 * spread * exp2(-level)), 1.0, most);
     float phase = wanted < 3.0 ? 0.0 : phaseOf(texel);
     Level pyramid = levelOf(level, innerSize);
+    photonWidth = clamp(max(photonWidth, kOverlap * spread * exp2(-level) / wanted), kNarrowest, 1.0);
     float from = 0.0;
     vec3 before = vec3(0.0);
     vec2 landed[kSampleRoom];

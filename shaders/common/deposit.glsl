@@ -41,7 +41,15 @@ Level levelOf(float level, ivec2 size) {
     return Level(size >> fine, size >> (fine + 1), firstTexelOf(fine, size), firstTexelOf(fine + 1, size), level - float(fine));
 }
 
+// How wide a deposit is, in texels of its level; set it before the first deposit. Where photons land closer together than
+// texels lie, a wider one would only blur what they resolve.
+float photonWidth = 1.0;
+const float kNarrowest = 0.05;
+const float kOverlap = 2.0;   // photons wider than they lie apart: neither they nor their beat against the texels show
+
+// Of a square of that width in the four texels it may touch: at 1 they are bilinear.
 vec4 shares(vec2 f) {
+    f = clamp((f - 0.5) / photonWidth + 0.5, 0.0, 1.0);
     return vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
 }
 

@@ -106,6 +106,7 @@ float levelAt(ivec2 texel, vec4 own, float way, vec3 exitNormal, Meeting meeting
             apart = max(apart, length((other - at) * mapSize));
         }
     }
+    if (apart >= 0.0) photonWidth = clamp(kOverlap * apart, kNarrowest, 1.0);
     float top = float(u_levels - 1);
     // No neighbour goes its way: at the rim, where light spreads most.
     return apart < 0.0 ? top : clamp(log2(max(apart, 1e-3)) + kLevelBias, 0.0, top);

@@ -55,19 +55,21 @@ image::Comparison compareScene(const std::string& name, render::Mode mode = rend
     return result;
 }
 
-// A prototype of the same method reached .050, flux within .6%, centroids within .4 cells; what remains is the map's
-// resolution in the focus (58% of the flux falls in 100 of 65,536 cells) and the mesh.
+// What remains is the map's resolution in the focus: 58% of the flux falls in 100 of 65,536 cells, so that where texels
+// happen to lie there moves the figure by .005 (.041 to .050 for views a few per cent apart, at any number of faces).
 TEST(Reference, Sphere) {
-    const image::Comparison result = compareScene("sphere");
-    EXPECT_LE(result.relativeL1, 0.07);
-    EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
-    EXPECT_LE(result.worstCentroidCells, 1.0);
+    for (const int levels : {4, 5}) {   // 5,120 and 20,480 faces
+        const image::Comparison result = compareScene("sphere", render::Mode::Refined, levels);
+        EXPECT_LE(result.relativeL1, 0.055);
+        EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
+        EXPECT_LE(result.worstCentroidCells, 1.0);
+    }
 }
 
 // Flat faces: the walk is exact after one step, what remains is the deposit at the beam's edges (.0065 in the prototype).
 TEST(Reference, Prism) {
     const image::Comparison result = compareScene("prism");
-    EXPECT_LE(result.relativeL1, 0.03);
+    EXPECT_LE(result.relativeL1, 0.015);
     EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
     EXPECT_LE(result.worstCentroidCells, 1.0);
 }
@@ -99,7 +101,7 @@ TEST(Reference, PrismInAContinuousSpectrum) {
 // does not follow. The limit holds what two interfaces give.
 TEST(Reference, GemKeepsToTheTwoInterfaceFloor) {
     const image::Comparison result = compareScene("gem");
-    EXPECT_LE(result.relativeL1, 0.36);
+    EXPECT_LE(result.relativeL1, 0.35);
 }
 
 // The published algorithm, as its printed shader does it. Its floor with infinitely many photons, computed apart, is .313
