@@ -29,6 +29,9 @@ struct Case {
     std::function<Setup()> make;
 };
 
+// "what-value": the name of a case of a sweep.
+std::string numbered(const char* what, double value);
+
 // Grid 96, map 128: small enough for hundreds of cases, and every search, view and level of the pyramid at work.
 render::Transport smallTransport();
 

@@ -1,6 +1,5 @@
 // Where the light stands, how wide it shines, what it is made of.
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -50,12 +49,6 @@ Setup withCookie(int side, int pitch) {
     return setup;
 }
 
-std::string number(const char* what, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%s-%g", what, value);
-    return text;
-}
-
 }  // namespace
 
 std::vector<Case> lightCases() {
@@ -66,10 +59,10 @@ std::vector<Case> lightCases() {
 
     // Distance from the sphere's surface, the cone just around it or 60 degrees
     for (const float gap : {0.0f, 1e-6f, 1e-4f, 1e-3f, 1e-2f, 0.1f}) {
-        add(number("light-at", gap), [=] { return lit(spotAbove({0, 0.8f + gap, 0}, {0, 0, 0}, 60.0f)); });
+        add(numbered("light-at", gap), [=] { return lit(spotAbove({0, 0.8f + gap, 0}, {0, 0, 0}, 60.0f)); });
     }
     for (const float distance : {10.0f, 1e3f, 1e5f}) {
-        add(number("light-far", distance), [=] {
+        add(numbered("light-far", distance), [=] {
             const float halfAngle = std::max(glm::degrees(std::atan(0.35f / distance)), 1e-3f);
             Setup setup = lit(spotAbove(kMiddle + glm::vec3(0.3f, 1, 0.2f) * distance, kMiddle, halfAngle));
             setup.scene.lights.front().intensity *= distance * distance;
@@ -92,12 +85,12 @@ std::vector<Case> lightCases() {
 
     // Grazing: the sphere's shadow is as long as the floor and longer
     for (const float height : {0.85f, 0.6f, 0.52f, 0.5001f}) {
-        add(number("grazing", height), [=] { return lit(spotAbove({-3, height, 0}, kMiddle, 10.0f)); });
+        add(numbered("grazing", height), [=] { return lit(spotAbove({-3, height, 0}, kMiddle, 10.0f)); });
     }
 
     // Cones
     for (const float halfAngle : {1e-3f, 1e-2f, 0.1f, 45.0f, 80.0f, 89.9f}) {
-        add(number("cone", halfAngle), [=] {
+        add(numbered("cone", halfAngle), [=] {
             Setup setup = lit([=](scene::Light& light) { light.innerConeDeg = 0.0f, light.outerConeDeg = halfAngle; });
             if (halfAngle <= 1e-3f) setup.jumps = "the step is as wide as the cone";
             return setup;
@@ -116,7 +109,7 @@ std::vector<Case> lightCases() {
     });
     add("sun-from-below", [] { return lit(sun({0.2f, 1, 0})); });
     for (const float side : {1e3f, 1e6f, 1e9f}) {
-        add(number("sun-wide-scene", side), [=] {
+        add(numbered("sun-wide-scene", side), [=] {
             Setup setup = lit(sun({0.3f, -1, 0.1f}));
             setup.scene = changed(std::move(setup.scene), [=](scene::Geometry& geometry) {
                 for (std::uint32_t i = geometry.objects[1].firstIndex; i < geometry.indices.size(); ++i) geometry.vertices[geometry.indices[i]].position *= 0.2f * side;

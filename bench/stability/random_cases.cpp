@@ -1,5 +1,6 @@
 // Scenes that a seed draws: any glass, mesh, light, receiver and option at once.
 #include <algorithm>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -122,6 +123,12 @@ Setup draw(std::uint64_t seed) {
 
 Case randomCase(std::uint64_t seed) {
     return {.group = "random", .name = "seed-" + std::to_string(seed), .seed = seed, .make = [seed] { return draw(seed); }};
+}
+
+std::string numbered(const char* what, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s-%g", what, value);
+    return text;
 }
 
 render::Transport smallTransport() {

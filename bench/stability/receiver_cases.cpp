@@ -1,6 +1,5 @@
 // What the light falls on, and how large the whole scene is and where.
 #include <cmath>
-#include <cstdio>
 #include <glm/gtc/constants.hpp>
 
 #include "bench/stability/case.h"
@@ -37,12 +36,6 @@ Setup scaledSphere(float by) {
         return std::abs(share - 0.8217) < 1e-3 ? "" : "the share that lands depends on the scale: " + std::to_string(share);
     };
     return setup;
-}
-
-std::string number(const char* what, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%s-%g", what, value);
-    return text;
 }
 
 }  // namespace
@@ -117,9 +110,9 @@ std::vector<Case> receiverCases() {
     add("without-area", [] { return over([](SyntheticScene& parts) { addFloorAt(parts, 0.0f, 0.0f); }); });
 
     // Scale and place: the same scene, all of it
-    for (const float by : {1e-6f, 1e-3f, 1e-2f, 1e2f, 1e4f, 1e6f, 1e9f, 1e12f}) in("scale", number("scaled", by), [=] { return scaledSphere(by); });
+    for (const float by : {1e-6f, 1e-3f, 1e-2f, 1e2f, 1e4f, 1e6f, 1e9f, 1e12f}) in("scale", numbered("scaled", by), [=] { return scaledSphere(by); });
     for (const float by : {1e2f, 1e4f, 1e6f}) {
-        in("scale", number("far-from-origin", by), [=] { return plain(shifted(sphereScene(optics::Cauchy{1.5046, 0.0042}), glm::vec3(by, 0, -by))); });
+        in("scale", numbered("far-from-origin", by), [=] { return plain(shifted(sphereScene(optics::Cauchy{1.5046, 0.0042}), glm::vec3(by, 0, -by))); });
     }
     in("scale", "near-far-1e6", [] {   // seen and lit from 1 mm to 1 km
         Setup setup = over([](SyntheticScene& parts) { addFloorAt(parts, 0.0f, 1e3f); }, {0, 0.801f, 0});

@@ -92,6 +92,18 @@ VertexArray makeVertexArray() {
     return VertexArray(name);
 }
 
+Query makeQuery(GLenum target) {
+    GLuint name = 0;
+    glCreateQueries(target, 1, &name);
+    return Query(name);
+}
+
+TransformFeedback makeTransformFeedback() {
+    GLuint name = 0;
+    glCreateTransformFeedbacks(1, &name);
+    return TransformFeedback(name);
+}
+
 Sampler makeSampler(GLenum filter, GLenum wrap, std::string_view text) {
     GLuint name = 0;
     glCreateSamplers(1, &name);

@@ -89,6 +89,8 @@ class BufferTexture : public GlName<deleteTexture> {
 Framebuffer makeFramebuffer(std::string_view label, std::initializer_list<GLuint> colors, GLuint depth = 0);
 // Empty: draws that need no vertex data need one bound all the same.
 VertexArray makeVertexArray();
+Query makeQuery(GLenum target);
+TransformFeedback makeTransformFeedback();
 Sampler makeSampler(GLenum filter, GLenum wrap, std::string_view label);
 // Hardware depth comparison (LESS or EQUAL), linear: one fetch is a 2x2 percentage-closer filter.
 Sampler makeShadowSampler(std::string_view label);

@@ -7,11 +7,7 @@ namespace caustream::gl {
 void StageTimer::beginFrame() { spans_.clear(); }
 
 GLuint StageTimer::query(std::size_t index) {
-    while (queries_.size() <= index) {
-        GLuint name = 0;
-        glCreateQueries(GL_TIMESTAMP, 1, &name);
-        queries_.emplace_back(name);
-    }
+    while (queries_.size() <= index) queries_.push_back(makeQuery(GL_TIMESTAMP));
     return queries_[index].get();
 }
 

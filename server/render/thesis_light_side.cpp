@@ -95,11 +95,7 @@ void ThesisLightSide::traceCaster(const LightSide::Inputs& in, const scene::Obje
         casterLayers_.run({in.gpu, caster, view, grid, grid, nullptr, levels + 1}, CasterLayers::Side::Front, front_);
         casterLayers_.run({in.gpu, caster, view, grid, grid, nullptr}, CasterLayers::Side::Back, back_);
     });
-    if (photons_.size() <= index) {
-        GLuint name = 0;
-        glCreateQueries(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, 1, &name);
-        photons_.emplace_back(name);
-    }
+    if (photons_.size() <= index) photons_.push_back(gl::makeQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN));
     const PhotonPoints* photons = nullptr;
     timer.stage("photon_hierarchy", [&] { photons = &hierarchy_.run({front_, levels, photons_[index].get()}); });
     timer.stage("photon_splat", [&] {

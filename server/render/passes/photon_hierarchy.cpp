@@ -10,9 +10,7 @@ namespace {
 
 void ensure(PhotonPoints& points, std::size_t bytes) {
     if (!points.feedback) {
-        GLuint name = 0;
-        glCreateTransformFeedbacks(1, &name);
-        points.feedback = gl::TransformFeedback(name);
+        points.feedback = gl::makeTransformFeedback();
         points.vertices = gl::makeVertexArray();
         glEnableVertexArrayAttrib(points.vertices.get(), 0);
         glVertexArrayAttribIFormat(points.vertices.get(), 0, 1, GL_UNSIGNED_INT, 0);
