@@ -14,7 +14,9 @@
 
 namespace caustream::render {
 
-enum class Mode { Refined, Thesis };        // Thesis: as published (Blanchette 2012), the baseline of comparisons
+// Thesis: as published (Blanchette 2012), the baseline of comparisons. Traced: every interface and bounce exactly,
+// converging while nothing moves. Auto: of refined and traced, what suits the scene and whether anything moves.
+enum class Mode { Refined, Thesis, Traced, Auto };
 
 constexpr int kContinuous = 0;              // of Transport::wavelengths
 constexpr int kContinuousBands = 7;         // exact wavelengths of a map in bands that asks for it
@@ -32,8 +34,11 @@ struct Transport {
     bool filter = true;                     // smooth the map where photons are sparse
     bool forceDispersive = false;           // trace all wavelengths even where the glass does not disperse
     int hierarchyLevels = 3;                // Thesis: levels of the photon hierarchy, 1..6
+    int bounces = 8;                        // Traced: reflections inside that are followed, 0..32
+    bool exactReceivers = false;            // Traced: receivers are met triangle by triangle, not in the map's view
     double budgetMs = 0.0;                  // choose the configuration of least error that takes no longer; 0: as given
-    double targetError = 0.0;               // choose the fastest whose map is this accurate (relative L1); 0: as given
+    double targetError = 0.0;               // choose the fastest whose map is this accurate (relative L1); 0: as given.
+                                            //   Traced: where convergence ends; 0: at 1%
     bool operator==(const Transport&) const = default;
 };
 
@@ -52,6 +57,7 @@ struct Request {
     optics::Observer observer = optics::Observer::Cie1931;   // the fit: to compare with references made with it
     int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side
     bool still = false;                     // 4x anti-aliasing, ledger always counted
+    bool converge = false;                  // nothing moves: adds photons to this light pose's map, samples to the picture
     bool countResiduals = false;            // traces anew and fills FrameStats::residuals
     Omissions forced;                       // done although the scene does not need them: for measuring and for tests
     // Shown in place of the spectral map that is traced, to measure what the map's error does to a picture: RGB
@@ -74,7 +80,8 @@ struct StageTime {
 // Flux in units of the light's flux per steradian on its axis (sr; m^2 for a directional light), luminance-weighted.
 struct EnergyLedger {
     double onCasters = 0, deposited = 0, absorbed = 0, reflected = 0, totalReflection = 0, rejected = 0, leftMap = 0,
-           noReceiver = 0;
+           noReceiver = 0,
+           cut = 0;                         // Traced: paths with more bounces than asked for, or too weak to follow
 };
 
 // How wrong the spectral map may be: relative L1, of luminance.
@@ -94,11 +101,20 @@ struct Residuals {
     Histogram receiver{};                   // meetings with a receiver
 };
 
+// How far a traced map has come. There for every map that is traced or would be if nothing moved.
+struct Convergence {
+    std::uint64_t photons = 0;              // in the map so far
+    double error = 1.0, target = 0.01;      // estimated relative L1 of the map; where it ends
+    double progress = 0.0;                  // share of the photons it will take, 0..1
+    bool converged = false;                 // more frames of the same state would not differ by more than the target
+};
+
 struct FrameStats {
     std::vector<StageTime> stages;
     std::vector<PlanEntry> plan;
     EnergyLedger ledger;
     std::optional<ErrorEstimate> error;     // nothing: no map, or one whose transport cannot tell
+    std::optional<Convergence> convergence;
     std::optional<Residuals> residuals;     // when asked for and photons were traced
     std::string choice;                     // what budgetMs or targetError chose, and why; empty: not asked
     std::uint32_t photons = 0;              // traced for the map that this frame shows, times no wavelengths
