@@ -11,17 +11,15 @@
 
 #include "error.h"
 #include "gl/context.h"
+#include "render/camera_side.h"
 #include "render/choose_transport.h"
 #include "render/key_light.h"
 #include "render/light_side.h"
 #include "render/light_uniforms.h"
 #include "render/map_energy.h"
-#include "render/passes/camera_casters.h"
 #include "render/passes/camera_receivers.h"
-#include "render/passes/dispersive_refraction.h"
 #include "render/passes/gap_fill.h"
 #include "render/passes/present.h"
-#include "render/passes/thesis_refraction.h"
 #include "render/read_back.h"
 #include "render/thesis_light_side.h"
 #include "render/thesis_plan.h"
@@ -120,15 +118,12 @@ struct Pipeline::Impl {
     LightSide lightSide;
     ThesisLightSide thesisSide;
     GapFill gapFill;
-    CameraReceivers receivers;
-    CameraCasters casters;
-    DispersiveRefraction refraction;
-    ThesisRefraction thesisRefraction;
+    CameraSide cameraSide;
     Present present;
 
     std::vector<std::unique_ptr<SceneEntry>> scenes;
     std::list<LightEntry> lights;              // newest first
-    gl::Texture color, depth, front, back, output;
+    gl::Texture output;
     Calibration calibration;
     struct Chosen {
         const void* scene;
@@ -138,15 +133,13 @@ struct Pipeline::Impl {
     std::list<Chosen> chosen;                  // newest first: what each scene and wish had last
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
-        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), receivers(s), casters(s), refraction(s), thesisRefraction(s), present(s) {
+        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), cameraSide(s), present(s) {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
     }
 
     SceneEntry& sceneEntry(const scene::Scene& scene);
     Request withChoice(const Request& request, const PlanFacts& facts, std::string& sentence);
     LightMaps& lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport, RenderPlan& plan, PlanFacts facts);
-    void cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
-                    const LightMaps& maps, const RenderPlan& plan, int width, int height);
     void picture(const Request& request, LightMaps& maps, float scale);
     void fillGaps(LightMaps& maps, bool tell);
     const gl::Texture& mapOf(LightMaps& maps, int size);
@@ -277,63 +270,9 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     return maps;
 }
 
-void Pipeline::Impl::cameraSide(const Request& request, SceneEntry& entry, const View& view, const Lighting& lighting,
-                                const LightMaps& maps, const RenderPlan& plan, int width, int height) {
-    const scene::Scene& scene = *request.scene;
-    const bool thesis = request.transport.mode == Mode::Thesis;
-    const char* const shading = thesis ? "thesis_receivers" : "camera_receivers";
-    const char* const through = thesis ? "thesis_refraction" : "dispersive_refraction";
-    if (plan.runs(shading)) {
-        timer.stage(shading, [&] {
-            receivers.run({entry.gpu, scene.materials, lighting, view, width, height, thesis, request.forced}, {color, depth});
-        });
-    }
-    if (!plan.runs("camera_casters")) return;
-
-    // Casters from back to front, each into the picture of what is behind it.
-    std::vector<const scene::Object*> order;
-    for (const scene::Object& object : scene.geometry->objects) {
-        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
-        const bool thin = material.caster && material.thinWalled && !thesis;   // which has none
-        if (refracts(material, scene.outsideIndex) || thin) order.push_back(&object);
-    }
-    std::sort(order.begin(), order.end(), [&](const scene::Object* a, const scene::Object* b) {
-        return view.toView(a->bounds.centre()).z < view.toView(b->bounds.centre()).z;
-    });
-    const bool refracted = plan.runs(through);
-    if (refracted) timer.stage(through, [&] { thesis ? thesisRefraction.begin(color) : refraction.begin(color); });
-    for (const scene::Object* object : order) {
-        PixelBox box;
-        timer.stage("camera_casters", [&] {
-            const bool shown = request.target == Target::Pass && request.pass == "camera_casters";
-            const bool forced = request.forced.has(Omission::Box) || request.forced.has(Omission::UnseenGlass);
-            box = casters.run({entry.gpu, *object, view, width, height, thesis || shown || forced}, {front, back});
-            if (forced) box = {0, 0, width, height};
-        });
-        if (box.empty() || !refracted) continue;
-        const scene::Material& material = scene.materials[static_cast<std::size_t>(object->material)];
-        DispersiveRefraction::Glass glass;
-        glass.thinWalled = material.thinWalled;
-        glass.tint = glm::vec3(material.baseColor);
-        const optics::WavelengthSet& set = maps.seen;
-        const Transport& transport = request.transport;
-        for (std::size_t i = 0; i < set.nm.size(); ++i) {
-            glass.wavelengths.push_back({static_cast<float>(optics::refractiveIndex(material.dispersion, set.nm[i]) / scene.outsideIndex),
-                                         glm::vec3(set.xyzToRgb * set.xyz[i]), static_cast<float>(material.absorption.at(set.nm[i]))});
-        }
-        timer.stage(through, [&] {
-            if (thesis) return thesisRefraction.run({view, front, back, depth, glass, lighting}, color);
-            refraction.run({view, front, back, box, object->bounds, depth, glass, lighting},
-                           request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true, request.forced}
-                                         : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false, request.forced},
-                           color);
-        });
-    }
-}
-
 // The image that the request asks for, in `output`, rows top to bottom.
 void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scale) {
-    Present::Inputs in{.image = color.get(), .mode = Present::Mode::Picture, .scale = scale, .downsample = request.still};
+    Present::Inputs in{.image = cameraSide.color().get(), .mode = Present::Mode::Picture, .scale = scale, .downsample = request.still};
     if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = mapOf(maps, request.transport.mapSize).get(), .mode = Present::Mode::Map};
     if (request.target == Target::Pass) {
         const bool thesis = request.transport.mode == Mode::Thesis;
@@ -343,7 +282,7 @@ void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scal
         if (request.pass == "receiver_depth") in = {.image = receiverDepths.get(), .mode = Present::Mode::Layer, .depthImage = true};
         if (request.pass == "shadow") in = {.image = maps.shadow.get(), .mode = Present::Mode::Layer, .depthImage = true};
         if (request.pass == "outer_map") in = {.image = maps.outerMap.get(), .mode = Present::Mode::Map};
-        if (request.pass == "camera_casters") in = {.image = front.get(), .mode = Present::Mode::Normals};
+        if (request.pass == "camera_casters") in = {.image = cameraSide.front().get(), .mode = Present::Mode::Normals};
     }
     const bool linear = request.target == Target::Composite && request.sample != Sample::U8;
     if (linear) in.mode = Present::Mode::Linear;
@@ -372,9 +311,9 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     impl_->shaders.program("spectral_step");
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
     report(1);
-    impl_->receivers.warmUp();
+    impl_->cameraSide.warmUpReceivers();
     report(2);
-    impl_->refraction.warmUp();
+    impl_->cameraSide.warmUpCasters();
     impl_->present.warmUp();
     report(3);
 
@@ -434,7 +373,7 @@ Frame Pipeline::run(const Request& asked) {
     const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey * std::exp2(scene.exposureBiasEv);
     frame.stats.exposureEv = std::log2(scale / unit);
     const int zoom = request.still ? 2 : 1;
-    impl.cameraSide(request, entry, view, lighting, maps, plan, zoom * request.width, zoom * request.height);
+    impl.cameraSide.run({request, entry.gpu, view, lighting, maps, plan, zoom * request.width, zoom * request.height}, impl.timer);
     const bool floats = !plan.runs("present");
     if (!floats) impl.timer.stage("present", [&] { impl.picture(request, maps, request.sample == Sample::U8 ? scale : unit); });
 
