@@ -43,6 +43,7 @@ class Loader {
     Status readLights();
     void readCameras();
     void addMissing();
+    void limitMirrors();
     Status readSceneExtras();
     int defaultMaterial();
     void append(Object object, const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
@@ -70,6 +71,7 @@ tl::expected<Scene, LoadError> Loader::load(const std::string& name) {
     if (!nodes) return tl::unexpected(nodes.error());
     nodes_ = std::move(*nodes);
     if (auto ok = readMeshes(); !ok) return tl::unexpected(ok.error());
+    limitMirrors();
     if (auto ok = readLights(); !ok) return tl::unexpected(ok.error());
     readCameras();
     addMissing();
@@ -189,6 +191,16 @@ int Loader::defaultMaterial() {
     return defaultMaterial_;
 }
 
+// Mirrors are casters in traced mode, and no file that was shown as receivers fails for having many.
+void Loader::limitMirrors() {
+    int casters = 0;
+    for (const Object& o : geometry_->objects) casters += scene_.materials[o.material].caster || scene_.materials[o.material].mirror;
+    if (casters <= limits_.casters) return;
+    for (Material& material : scene_.materials) material.mirror = false;
+    warn("the file has more than " + std::to_string(limits_.casters) +
+         " transmissive and mirroring objects; its smooth metal throws no light");
+}
+
 Status Loader::readLights() {
     for (const PlacedNode& placed : nodes_) {
         const auto* link = extension(model_.nodes[placed.index].extensions, "KHR_lights_punctual");
@@ -221,7 +233,10 @@ void Loader::readCameras() {
 void Loader::addMissing() {
     const Bounds about = subject();
     bool receiver = false;
-    for (const Object& object : geometry_->objects) receiver = receiver || !scene_.materials[object.material].caster;
+    for (const Object& object : geometry_->objects) {
+        const Material& material = scene_.materials[object.material];
+        receiver = receiver || (!material.caster && !material.mirror);
+    }
     if (!receiver) {
         Object floor;
         floor.name = "floor";

@@ -12,6 +12,10 @@ namespace {
 constexpr std::size_t kMaxTableEntries = 1024;
 constexpr double kMinIndex = 1.0, kMaxIndex = 10.0;  // of refraction, over the band
 constexpr std::size_t kMaxNameBytes = 64;
+constexpr double kMostPriority = 1000.0;  // and least: a whole number that any type holds
+// Of GGX facet normals half lie within atan(roughness^2) of the surface's: 2.3 degrees here. Rougher metal blurs what it
+// throws over more than the caustics that a mirror would draw.
+constexpr float kMirrorRoughness = 0.2f, kMirrorMetal = 0.9f;
 
 tl::unexpected<LoadError> fail(std::string message) {
     return tl::unexpected(LoadError{std::move(message)});
@@ -77,6 +81,15 @@ tl::expected<optics::Absorption, LoadError> readAbsorption(const tinygltf::Mater
     std::vector<double> color = numbers(member(*volume, "attenuationColor"));
     if (distance <= 0.0 || color.size() != 3) return optics::Absorption{};
     return optics::absorptionFromRgb({color[0], color[1], color[2]}, distance);
+}
+
+tl::expected<int, LoadError> readPriority(const tinygltf::Material& source, const std::string& what) {
+    const auto* value = caustreamExtras(source.extras, "priority");
+    if (!value) return 0;
+    const double priority = numberOr(value, NAN);
+    if (!(std::abs(priority) <= kMostPriority) || priority != std::trunc(priority))
+        return fail(what + ": priority must be a whole number within -1000 to 1000");
+    return static_cast<int>(priority);
 }
 
 glm::vec3 vector3(const std::vector<double>& values, const glm::vec3& fallback) {
@@ -170,7 +183,11 @@ tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source,
     // glass
     const auto* transmission = extension(source.extensions, "KHR_materials_transmission");
     material.caster = transmission && numberOr(member(*transmission, "transmissionFactor"), 0.0) > 0.0;
-    if (!material.caster) return material;
+    if (!material.caster) {
+        // A texture may make parts of it something else
+        material.mirror = material.metallic >= kMirrorMetal && material.roughness <= kMirrorRoughness && pbr.metallicRoughnessTexture.index < 0;
+        return material;
+    }
     const auto* volume = extension(source.extensions, "KHR_materials_volume");
     const bool solid = volume && numberOr(member(*volume, "thicknessFactor"), 0.0) > 0.0;
     material.thinWalled = volume && !solid;
@@ -182,6 +199,9 @@ tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source,
     auto absorption = readAbsorption(source, volume, what);
     if (!absorption) return tl::unexpected(absorption.error());
     material.absorption = std::move(*absorption);
+    const auto priority = readPriority(source, what);
+    if (!priority) return tl::unexpected(priority.error());
+    material.priority = *priority;
     return material;
 }
 

@@ -42,6 +42,8 @@ struct Material {
     optics::Dispersion dispersion;    // casters only
     optics::Absorption absorption;    // casters only
     bool thinWalled = false;          // KHR_materials_volume thickness 0: no refraction
+    bool mirror = false;              // metal and smooth, never a caster too: throws light in traced mode, is a receiver in the others
+    int priority = 0;                 // casters only: where they overlap, the highest is what is there (docs/units.md)
     glm::vec4 baseColor{1.0f};        // linear; tints what a thin-walled caster lets through
     int baseColorTexture = -1;        // index into Scene::textures
     float roughness = 1.0f, metallic = 0.0f;

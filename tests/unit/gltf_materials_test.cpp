@@ -108,6 +108,52 @@ TEST(GltfMaterial, SurfaceFactors) {
     EXPECT_EQ(material.emissive, glm::vec3(2.0f, 1.0f, 0.0f));
 }
 
+TEST(GltfMaterial, SmoothMetalIsAMirror) {
+    const auto surface = [](json pbr) {
+        json material{{"pbrMetallicRoughness", std::move(pbr)}};
+        material["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.0;
+        return material;
+    };
+    const Material gold = materialOf(surface({{"metallicFactor", 1.0}, {"roughnessFactor", 0.2}}));
+    EXPECT_TRUE(gold.mirror);
+    EXPECT_FALSE(gold.caster);
+    EXPECT_EQ(gold.priority, 0);
+    EXPECT_TRUE(materialOf(surface({{"metallicFactor", 0.9}, {"roughnessFactor", 0.0}})).mirror);
+    EXPECT_FALSE(materialOf(surface({{"metallicFactor", 0.8}, {"roughnessFactor", 0.0}})).mirror);
+    EXPECT_FALSE(materialOf(surface({{"metallicFactor", 1.0}, {"roughnessFactor", 0.3}})).mirror);
+    EXPECT_FALSE(materialOf(surface(json::object())).mirror);   // glTF's default is rough
+    // Where light goes through, it does not turn back
+    EXPECT_FALSE(materialOf({{"pbrMetallicRoughness", {{"metallicFactor", 1.0}, {"roughnessFactor", 0.0}}}}).mirror);
+}
+
+// Light must land somewhere; and what was shown for a thousand chrome bolts before is shown still.
+TEST(GltfMaterial, MirrorsGetAFloorAndAreLimited) {
+    Glb glb = glassTetrahedron();
+    glb.root["materials"][0] = {{"pbrMetallicRoughness", {{"metallicFactor", 1.0}, {"roughnessFactor", 0.1}}}};
+    const auto one = load(glb);
+    ASSERT_TRUE(one) << one.error().message;
+    EXPECT_TRUE(one->materials[0].mirror);
+    EXPECT_TRUE(warns(*one, "a floor was placed"));
+    for (int i = 0; i < 20; ++i) {
+        glb.root["scenes"][0]["nodes"].push_back(glb.root["nodes"].size());
+        glb.root["nodes"].push_back({{"mesh", 0}});
+    }
+    const auto many = load(glb);
+    ASSERT_TRUE(many) << many.error().message;
+    EXPECT_FALSE(many->materials[0].mirror);
+    EXPECT_TRUE(warns(*many, "throws no light"));
+}
+
+TEST(GltfMaterial, PriorityIsAWholeNumber) {
+    EXPECT_EQ(materialOf(json::object()).priority, 0);
+    EXPECT_EQ(materialOf(extras({{"priority", 3}})).priority, 3);
+    EXPECT_EQ(materialOf(extras({{"priority", -1000}})).priority, -1000);
+    EXPECT_EQ(materialOf(extras({{"priority", 2.0}})).priority, 2);
+    for (const json& bad : {json(1.5), json(1001), json(-1e300), json(1e300), json("high"), json(true), json::array({1}), json{{"a", 1}}}) {
+        EXPECT_NE(errorOf(extras({{"priority", bad}})).find("priority"), std::string::npos) << bad;
+    }
+}
+
 // Two texels: red, then green.
 std::vector<std::uint8_t> redGreenPng() {
     const std::uint8_t texels[]{255, 0, 0, 255, 0, 255, 0, 255};
