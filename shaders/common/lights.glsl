@@ -18,11 +18,16 @@ vec4 towardsLight(Light light, vec3 posWorld) {
     return vec4(to * inversesqrt(r2), 1.0 / r2);
 }
 
-// KHR_lights_punctual: squared ramp in the cosine between inner and outer cone. A hard edge is one pixel wide.
-float coneFactor(Light light, vec3 toLight) {
+// KHR_lights_punctual: squared ramp in the cosine between inner and outer cone. A hard edge is as wide as `pixel`.
+float coneFactor(Light light, vec3 toLight, float pixel) {
     vec3 off = light.direction + toLight;
     float c = light.versineOuter - 0.5 * dot(off, off);   // as emission.glsl does it, and why
-    float pixel = max(fwidth(c), 1e-12);
     float soft = clamp(c * light.coneScale, 0.0, 1.0);
     return light.coneScale > 0.0 ? soft * soft : clamp(c / pixel + 0.5, 0.0, 1.0);
+}
+
+// One pixel wide.
+float coneFactor(Light light, vec3 toLight) {
+    vec3 off = light.direction + toLight;
+    return coneFactor(light, toLight, max(fwidth(light.versineOuter - 0.5 * dot(off, off)), 1e-12));
 }

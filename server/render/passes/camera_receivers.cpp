@@ -22,7 +22,7 @@ enum Maps : int { kNoMap, kInnerMap, kBothMaps };
 enum Unit : int { kBaseColor, kShadow, kMap, kOuterMap, kCookie };
 
 std::vector<gl::Flag> flags(bool shadow, int map, bool texture, bool full) {
-    return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}};
+    return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}, {"RAYS", 0}};
 }
 
 // The square around the outer cone, which a cookie spans; upright in the world.
