@@ -17,7 +17,9 @@ inline constexpr Choice<std::size_t> kDispersions[] = {{"constant", 0}, {"cauchy
 inline constexpr Choice<bool> kExposures[] = {{"auto", true}, {"ev", false}};
 inline constexpr Choice<bool> kQualities[] = {{"auto", true}, {"fixed", false}};
 inline constexpr Choice<bool> kCookies[] = {{"none", false}, {"texture", true}};
-inline constexpr Choice<TransportMode> kTransportModes[] = {{"refined", TransportMode::Refined},
+inline constexpr Choice<TransportMode> kTransportModes[] = {{"auto", TransportMode::Auto},
+                                                            {"traced", TransportMode::Traced},
+                                                            {"refined", TransportMode::Refined},
                                                             {"thesis", TransportMode::Thesis}};
 inline constexpr std::string_view kContinuousName = "continuous";
 inline constexpr Choice<bool> kBands[] = {{"rgb", false}, {"wavelengths", true}};

@@ -20,7 +20,7 @@ enum class Layout : std::uint8_t { Interleaved = 0, Planar = 1, PlanarShuffle = 
 enum FrameFlag : std::uint32_t {
     kFrameStill = 1,      // drawn with anti-aliasing, or asked for by frame.request
     kFrameScaled = 2,     // smaller than the view
-    kFrameConverged = 4,  // more frames of the same state would not differ
+    kFrameConverged = 4,  // a traced map at its target error: the last frame of its state, and always a still
     kFrameTest = 8,
 };
 

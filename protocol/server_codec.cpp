@@ -123,6 +123,26 @@ ErrorEstimate decodeErrorEstimate(const Item& item) {
     return error;
 }
 
+Convergence decodeConvergence(const Item& item) {
+    Fields in(item);
+    Convergence convergence;
+    convergence.photons = in.at("photons").integer(0, kMaxSafeInteger);
+    convergence.error = in.at("error").number(0, kAnyNumber);
+    convergence.target = in.at("target").number(0, kAnyNumber);
+    convergence.progress = in.at("progress").number(0, 1);
+    convergence.converged = in.at("converged").boolean();
+    in.finish();
+    return convergence;
+}
+
+Json toJson(const Convergence& convergence) {
+    return {{"photons", convergence.photons},
+            {"error", convergence.error},
+            {"target", convergence.target},
+            {"progress", convergence.progress},
+            {"converged", convergence.converged}};
+}
+
 ServerMessage decodeStats(Fields& in) {
     Stats stats;
     stats.frameSeq = in.at("frame_seq").u32();
@@ -130,6 +150,7 @@ ServerMessage decodeStats(Fields& in) {
     stats.plan = decodeList(in.at("plan"), decodePlanEntry);
     if (const auto v = in.find("ledger")) stats.ledger = decodeLedger(*v);
     if (const auto v = in.find("error")) stats.error = decodeErrorEstimate(*v);
+    if (const auto v = in.find("convergence")) stats.convergence = decodeConvergence(*v);
     if (const auto v = in.find("choice")) stats.choice = v->text(kSentenceBytes);
     stats.photons = in.at("photons").u32();
     stats.renderMs = in.at("render_ms").number(0, kAnyNumber);
@@ -270,6 +291,7 @@ std::string encode(const Stats& stats) {
     if (stats.ledger) json["ledger"] = toJson(*stats.ledger);
     if (stats.error)
         json["error"] = {{"sampling", stats.error->sampling}, {"spectral", stats.error->spectral}, {"total", stats.error->total}};
+    if (stats.convergence) json["convergence"] = toJson(*stats.convergence);
     if (!stats.choice.empty()) json["choice"] = stats.choice;
     return text(json);
 }

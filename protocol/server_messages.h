@@ -162,11 +162,20 @@ struct PlanEntry {
 struct Ledger {  // flux over the flux per steradian on the light's axis: sr (m^2 for a directional light)
     double onCasters = 0, deposited = 0, absorbed = 0, reflected = 0, totalReflection = 0, rejected = 0, leftMap = 0,
            noReceiver = 0;
+    double cut = 0;  // of a traced map: paths that were given up, too faint or with more bounces than asked for
     bool operator==(const Ledger&) const = default;
 };
 struct ErrorEstimate {  // of the spectral map: relative L1 of luminance
     double sampling = 0.0, spectral = 0.0, total = 0.0;
     bool operator==(const ErrorEstimate&) const = default;
+};
+struct Convergence {  // of a traced map, or of one that would be traced if nothing moved
+    std::uint64_t photons = 0;  // in the map so far
+    double error = 1.0;         // estimated, relative L1 of luminance
+    double target = 0.01;       // where it ends
+    double progress = 0.0;      // share of the photons that it will take, 0..1
+    bool converged = false;     // more frames of the same state would not differ by more than the target
+    bool operator==(const Convergence&) const = default;
 };
 struct Stats {  // of the newest frame
     std::uint32_t frameSeq = 0;
@@ -174,6 +183,7 @@ struct Stats {  // of the newest frame
     std::vector<PlanEntry> plan;
     std::optional<Ledger> ledger;  // nothing: not counted for this frame
     std::optional<ErrorEstimate> error;  // nothing: no map, or one whose transport cannot tell
+    std::optional<Convergence> convergence;  // nothing: the map is as good as it gets in one frame
     std::string choice;                  // what budget_ms or target_error chose, and why; empty: not asked
     std::uint32_t photons = 0;
     double renderMs = 0.0, encodeMs = 0.0;

@@ -39,6 +39,7 @@ void eachFlux(AnyLedger& ledger, Visit visit) {
     visit("rejected", ledger.rejected);
     visit("left_map", ledger.leftMap);
     visit("no_receiver", ledger.noReceiver);
+    visit("cut", ledger.cut);
 }
 
 constexpr double kAnyNumber = 1e300;

@@ -113,13 +113,13 @@ struct CameraState {
     bool operator==(const CameraState&) const = default;
 };
 
-enum class TransportMode { Refined, Thesis };
+enum class TransportMode { Auto, Traced, Refined, Thesis };
 
 inline constexpr int kContinuous = 0;   // of TransportState::wavelengths
 inline constexpr int kContinuousBands = 7;  // wavelengths of a map in bands that asks for "continuous"
 
 struct TransportState {
-    TransportMode mode = TransportMode::Refined;
+    TransportMode mode = TransportMode::Auto;
     int wavelengths = kContinuous;      // or 1..64; ignored when wavelengthsNm is given
     std::vector<double> wavelengthsNm;  // exact wavelengths, ascending
     int photonGrid = 0;                 // 0: chosen by the server
@@ -128,8 +128,10 @@ struct TransportState {
     int receiverSteps = 6;
     bool gapFill = false, filter = true, forceDispersive = false;
     int hierarchyLevels = 3;            // thesis: of the photon hierarchy
+    int bounces = 8;                    // traced: reflections inside a caster that are followed
+    bool exactReceivers = false;        // traced: light meets the receivers' triangles, not what the map's view sees of them
     double budgetMs = 0.0;              // 0: none
-    double targetError = 0.0;           // relative L1 of the map; 0: none
+    double targetError = 0.0;           // relative L1 of the map; 0: none, or of a traced map: 0.01
     bool operator==(const TransportState&) const = default;
 };
 

@@ -86,8 +86,10 @@ void checkTransport(const Item& item, const TransportState& transport) {
     const bool published = transport.wavelengthsNm.empty() && (count == kContinuous || count == 1 || count == 7 || count == 21);
     if (transport.mode == TransportMode::Thesis && !published)
         contradict("wavelengths", "mode \"thesis\" has the colours of 1, 7 or 21 wavelengths; \"continuous\" means 7 to it");
-    if (transport.budgetMs > 0 && transport.targetError > 0)
-        contradict("target_error", "set either this or budget_ms to more than 0");
+    // A traced map takes both: so many photons a frame, and so many frames.
+    const bool converges = transport.mode == TransportMode::Auto || transport.mode == TransportMode::Traced;
+    if (!converges && transport.budgetMs > 0 && transport.targetError > 0)
+        contradict("target_error", "set either this or budget_ms to more than 0; modes \"auto\" and \"traced\" take both");
 }
 
 TransportState decodeTransport(const Item& item, const Limits& limits) {
@@ -119,6 +121,8 @@ TransportState decodeTransport(const Item& item, const Limits& limits) {
     if (const auto v = in.find("filter")) transport.filter = v->boolean();
     if (const auto v = in.find("force_dispersive")) transport.forceDispersive = v->boolean();
     if (const auto v = in.find("hierarchy_levels")) transport.hierarchyLevels = v->integerInt(1, 6);
+    if (const auto v = in.find("bounces")) transport.bounces = v->integerInt(0, 32);
+    if (const auto v = in.find("exact_receivers")) transport.exactReceivers = v->boolean();
     if (const auto v = in.find("budget_ms")) transport.budgetMs = v->number(0, 60000);
     if (const auto v = in.find("target_error")) transport.targetError = v->number(0, 1);
     in.finish();

@@ -66,6 +66,8 @@ Json toJson(const TransportState& transport) {
         {"filter", transport.filter},
         {"force_dispersive", transport.forceDispersive},
         {"hierarchy_levels", transport.hierarchyLevels},
+        {"bounces", transport.bounces},
+        {"exact_receivers", transport.exactReceivers},
         {"budget_ms", transport.budgetMs},
         {"target_error", transport.targetError}};
 }

@@ -54,8 +54,18 @@ Sample sampleOf(const render::Frame& frame) {
     return Sample::F32;
 }
 
+render::Mode modeOf(protocol::TransportMode wanted) {
+    switch (wanted) {
+        case protocol::TransportMode::Auto: return render::Mode::Refined;
+        case protocol::TransportMode::Traced: return render::Mode::Traced;
+        case protocol::TransportMode::Refined: return render::Mode::Refined;
+        case protocol::TransportMode::Thesis: break;
+    }
+    return render::Mode::Thesis;
+}
+
 render::Transport transportOf(const protocol::TransportState& wanted) {
-    return {.mode = wanted.mode == protocol::TransportMode::Thesis ? render::Mode::Thesis : render::Mode::Refined,
+    return {.mode = modeOf(wanted.mode),
             .wavelengths = wanted.wavelengths,
             .wavelengthsNm = wanted.wavelengthsNm,
             .photonGrid = wanted.photonGrid,
@@ -66,6 +76,8 @@ render::Transport transportOf(const protocol::TransportState& wanted) {
             .filter = wanted.filter,
             .forceDispersive = wanted.forceDispersive,
             .hierarchyLevels = wanted.hierarchyLevels,
+            .bounces = wanted.bounces,
+            .exactReceivers = wanted.exactReceivers,
             .budgetMs = wanted.budgetMs,
             .targetError = wanted.targetError};
 }
@@ -151,9 +163,14 @@ protocol::Stats frameStats(const render::Frame& frame) {
     const render::EnergyLedger& ledger = frame.stats.ledger;
     if (ledger.onCasters != 0.0) {
         stats.ledger = protocol::Ledger{ledger.onCasters,       ledger.deposited, ledger.absorbed, ledger.reflected,
-                                        ledger.totalReflection, ledger.rejected,  ledger.leftMap,  ledger.noReceiver};
+                                        ledger.totalReflection, ledger.rejected,  ledger.leftMap,  ledger.noReceiver,
+                                        ledger.cut};
     }
     if (const auto& error = frame.stats.error) stats.error = {error->sampling, error->spectral, error->total};
+    if (const auto& convergence = frame.stats.convergence) {
+        stats.convergence = {convergence->photons, convergence->error, convergence->target, convergence->progress,
+                             convergence->converged};
+    }
     stats.choice = frame.stats.choice;
     stats.photons = frame.stats.photons;
     stats.renderMs = frame.stats.renderMs;

@@ -26,6 +26,11 @@ bool slider(const char* text, const char* id, double& value, double low, double 
                                ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
 }
 
+// Of the control that was drawn last.
+void tooltip(const char* text) {
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
 // The chosen name, when another one was chosen.
 template <class Names>
 const std::string* choice(const char* id, const std::string& current, const Names& names) {
@@ -159,32 +164,71 @@ void drawGlass(Model& model, Editor& editor) {
     if (changed) editor.glassChanged(model.material);
 }
 
-void drawTransport(Model& model, Editor& editor) {
-    protocol::TransportState& transport = model.transport;
+bool converges(const protocol::TransportState& transport) {
+    return transport.mode == protocol::TransportMode::Auto || transport.mode == protocol::TransportMode::Traced;
+}
+
+// The published algorithm has colours for 1, 7 or 21 wavelengths.
+Json wavelengthsFor(protocol::TransportState& transport) {
+    int& count = transport.wavelengths;
+    if (count == protocol::kContinuous) return "continuous";
+    if (transport.mode == protocol::TransportMode::Thesis) count = count < 4 ? 1 : count < 14 ? 7 : 21;
+    return count;
+}
+
+// How the light is followed, and how far.
+void drawMethod(Model& model, Editor& editor) {
     using protocol::TransportMode;
-    constexpr std::pair<const char*, TransportMode> kModes[] = {{"refined", TransportMode::Refined},
-                                                                {"thesis", TransportMode::Thesis}};
-    const auto changed = [&] {
-        // The published algorithm has colours for 1, 7 or 21 wavelengths.
-        int& count = transport.wavelengths;
-        const bool thesis = transport.mode == TransportMode::Thesis;
-        if (thesis && count != protocol::kContinuous) count = count < 4 ? 1 : count < 14 ? 7 : 21;
-        const Json wavelengths = count == protocol::kContinuous ? Json("continuous") : Json(count);
-        editor.change({{"transport", {{"mode", kModes[thesis].first}, {"wavelengths", wavelengths}}}});
+    struct Method {
+        const char *name, *says;
+        TransportMode mode;
     };
+    constexpr Method kMethods[] = {
+        {"auto", "Traced for faceted glass; for curved glass refined while something moves, traced at rest.", TransportMode::Auto},
+        {"traced", "Every surface and every bounce, exactly. At rest it converges to the target error.", TransportMode::Traced},
+        {"refined", "Two surfaces of each object, from pictures of them. The fastest.", TransportMode::Refined},
+        {"thesis", "As published (Blanchette 2012), to compare with.", TransportMode::Thesis}};
+    protocol::TransportState& transport = model.transport;
+    const auto* current = std::ranges::find(kMethods, transport.mode, &Method::mode);
     label("Method");
-    if (ImGui::BeginCombo("##mode", kModes[transport.mode == TransportMode::Thesis].first)) {
-        for (const auto& [name, mode] : kModes) {
-            if (!ImGui::Selectable(name, mode == transport.mode)) continue;
-            transport.mode = mode;
-            changed();
+    if (ImGui::BeginCombo("##mode", current->name)) {
+        for (const Method& method : kMethods) {
+            if (ImGui::Selectable(method.name, method.mode == transport.mode)) {
+                transport.mode = method.mode;
+                Json patch = {{"mode", method.name}, {"wavelengths", wavelengthsFor(transport)}};
+                // To what does not converge it means something else: how many photons.
+                if (!converges(transport)) patch["target_error"] = transport.targetError = 0.0;
+                editor.change({{"transport", patch}});
+            }
+            tooltip(method.says);
         }
         ImGui::EndCombo();
     }
+    tooltip(current->says);
+    if (!converges(transport)) return;
+
+    label("Bounces inside");
+    if (ImGui::SliderInt("##bounces", &transport.bounces, 0, 32, "%d", ImGuiSliderFlags_AlwaysClamp))
+        editor.change({{"transport", {{"bounces", transport.bounces}}}});
+    if (ImGui::Checkbox("Exact receivers", &transport.exactReceivers))
+        editor.change({{"transport", {{"exact_receivers", transport.exactReceivers}}}});
+    tooltip("Light meets the receivers' triangles themselves, not what the map's view sees of them.");
+    // 0, the server's own choice, stands for one per cent.
+    double percent = transport.targetError > 0.0 ? 100.0 * transport.targetError : 1.0;
+    if (slider("Converge at rest to", "##target", percent, 0.1, 20.0, "%.1f %% error", true)) {
+        transport.targetError = percent / 100.0;
+        editor.change({{"transport", {{"target_error", transport.targetError}}}});
+    }
+}
+
+void drawTransport(Model& model, Editor& editor) {
+    protocol::TransportState& transport = model.transport;
+    drawMethod(model, editor);
     label("Wavelengths");
     const bool continuous = transport.wavelengths == protocol::kContinuous;
     if (ImGui::SliderInt("##wavelengths", &transport.wavelengths, protocol::kContinuous, 64, continuous ? "continuous" : "%d",
-                         ImGuiSliderFlags_AlwaysClamp)) changed();
+                         ImGuiSliderFlags_AlwaysClamp))
+        editor.change({{"transport", {{"wavelengths", wavelengthsFor(transport)}}}});
 
     constexpr int kGrids[] = {0, 128, 256, 512, 1024, 2048}, kMaps[] = {256, 512, 1024, 2048};
     const auto sizes = [&](const char* title, const char* id, const char* field, int& value, auto& list) {

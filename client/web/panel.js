@@ -2,7 +2,18 @@
 import { asCauchy, bToSlider, cauchyWithin, sliderToB } from './glass.js';
 
 const byId = (id) => document.getElementById(id);
+const kMethods = [
+    ['auto', 'Automatic', 'Traced for faceted glass; for curved glass refined while something moves, traced at rest'],
+    ['traced', 'Traced', 'Every surface and every bounce, exactly; at rest it converges to the target error'],
+    ['refined', 'Refined', 'Two surfaces of each object, from pictures of them; the fastest'],
+    ['thesis', 'As published (2012)', 'The algorithm of the thesis, to compare with'],
+];
+const kConverging = ['auto', 'traced'];
 const kGrids = [0, 128, 256, 512, 1024, 2048], kMapSizes = [256, 512, 1024, 2048];
+
+// The target error's slider is logarithmic, from 0.1 % to 20 %.
+const errorAt = (place) => Number((0.001 * 200 ** place).toPrecision(2));
+const placeOf = (error) => Math.log(error / 0.001) / Math.log(200);
 
 function fill(select, options, chosen) {
     const key = JSON.stringify(options);
@@ -53,8 +64,14 @@ export class Panel {
         on('mode', 'change', (mode) => {
             const now = this.session_.shown.transport?.wavelengths ?? 'continuous';
             const wavelengths = Array.isArray(now) ? now.length : now;
-            change({ transport: { mode, wavelengths: wavelengths === 'continuous' ? wavelengths : this.countFor_(mode, wavelengths) } });
+            const transport = { mode, wavelengths: wavelengths === 'continuous' ? wavelengths : this.countFor_(mode, wavelengths) };
+            // To what does not converge it means something else: how many photons.
+            if (!kConverging.includes(mode)) transport.target_error = 0;
+            change({ transport });
         });
+        on('bounces', 'input', (value) => change({ transport: { bounces: Number(value) } }));
+        on('exact-receivers', 'change', (_, box) => change({ transport: { exact_receivers: box.checked } }));
+        on('target-error', 'input', (value) => change({ transport: { target_error: errorAt(Number(value)) } }));
         on('auto-exposure', 'change', (_, box) => this.expose_(box.checked ? null : this.exposureEv_));
         on('exposure', 'input', (value) => this.expose_(Number(value)));
         on('photon-grid', 'change', (value) => change({ transport: { photon_grid: Number(value) } }));
@@ -62,7 +79,7 @@ export class Panel {
     }
 
     mode_() {
-        return this.session_.shown.transport?.mode ?? 'refined';
+        return this.session_.shown.transport?.mode ?? 'auto';
     }
 
     // 0 is the slider's first place: continuous. The published algorithm has colours for 1, 7 or 21 wavelengths.
@@ -147,7 +164,13 @@ export class Panel {
         const transport = shown.transport ?? {};
         const count = Array.isArray(transport.wavelengths) ? transport.wavelengths.length : transport.wavelengths ?? 'continuous';
         show('wavelengths', count === 'continuous' ? 0 : count, String(count));
-        fill(byId('mode'), [['refined', 'Refined'], ['thesis', 'As published (2012)']], this.mode_());
+        fill(byId('mode'), kMethods.map(([mode, name]) => [mode, name]), this.mode_());
+        byId('mode').title = kMethods.find(([mode]) => mode === this.mode_())?.[2] ?? '';
+        for (const id of ['bounces-row', 'exact-receivers-row', 'target-error-row']) byId(id).hidden = !kConverging.includes(this.mode_());
+        show('bounces', transport.bounces ?? 8, String(transport.bounces ?? 8));
+        byId('exact-receivers').checked = transport.exact_receivers ?? false;
+        const targetError = transport.target_error || 0.01;    // 0, the server's own choice, stands for one per cent
+        show('target-error', placeOf(targetError), `${(100 * targetError).toFixed(targetError < 0.1 ? 1 : 0)} %`);
         const withOwn = (sizes, own) => [...new Set([...sizes, own])].sort((a, b) => a - b);
         const grid = transport.photon_grid ?? 0, mapSize = transport.map_size ?? 512;
         fill(byId('photon-grid'), withOwn(kGrids, grid).map((n) => [n, n ? `${n} × ${n}` : 'Automatic']), grid);

@@ -45,6 +45,7 @@ const Range kRanges[] = {
     {"transport.back_steps", "$", 1, 16, 1, "transport.back_steps"},
     {"transport.receiver_steps", "$", 1, 32, 1, "transport.receiver_steps"},
     {"transport.hierarchy_levels", "$", 1, 6, 1, "transport.hierarchy_levels"},
+    {"transport.bounces", "$", 0, 32, 1, "transport.bounces"},
     {"transport.budget_ms", "$", 0, 60000, 0.001, "transport.budget_ms"},
     {"transport.target_error", "$", 0, 1, 1e-6, "transport.target_error"},
     {"stream.width", "$", 16, 4096, 1, "stream.width"},
@@ -108,7 +109,7 @@ TEST(Limits, NumbersThatAreNoneAreOut) {
 
 TEST(Limits, IntegersAreNotTruncated) {
     for (const char* path : {"transport.wavelengths", "transport.photon_grid", "transport.map_size",
-                             "transport.back_steps", "transport.receiver_steps", "stream.width", "stream.height"}) {
+                             "transport.bounces", "transport.back_steps", "transport.receiver_steps", "stream.width", "stream.height"}) {
         const auto result = applyPatch(Json::object(), *setPath(Json::object(), path, 64.5));
         ASSERT_FALSE(result.has_value()) << path;
         EXPECT_EQ(result.error().code, ErrorCode::BadRequest);

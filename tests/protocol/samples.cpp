@@ -75,8 +75,9 @@ Stats fullStats() {
     stats.frameSeq = 12;
     stats.stages = {{"photon_trace", 3.5}};
     stats.plan = {{"photon_trace", true, "the light moved", {"absorption: none"}}, {"gap_fill", false, "not asked for", {}}};
-    stats.ledger = Ledger{8, 7, 0.25, 0.5, 0.125, 0.0625, 0.03125, 2};
+    stats.ledger = Ledger{8, 7, 0.25, 0.5, 0.125, 0.0625, 0.03125, 2, 0.015625};
     stats.error = ErrorEstimate{0.03125, 0.0625, 0.125};
+    stats.convergence = Convergence{9007199254740991, 0.0625, 0.015625, 0.25, true};
     stats.choice = "grid 256: the most that 16 ms allow";
     stats.photons = 25000;
     stats.renderMs = 30.5;
@@ -158,8 +159,9 @@ const std::vector<MessageSample<ServerMessage>>& serverSamples() {
         {Status{Status::Level::Warning, "gpu", "software rendering"},
          R"({"key":"gpu","level":"warning","message":"software rendering","op":"status"})"},
         {fullStats(),
-         R"({"choice":"grid 256: the most that 16 ms allow","dropped":1,"encode_ms":2.25,)"
-         R"("error":{"sampling":0.03125,"spectral":0.0625,"total":0.125},"exposure_ev":-1.5,"frame_seq":12,"ledger":{"absorbed":0.25,"deposited":7.0,)"
+         R"({"choice":"grid 256: the most that 16 ms allow","convergence":{"converged":true,"error":0.0625,)"
+         R"("photons":9007199254740991,"progress":0.25,"target":0.015625},"dropped":1,"encode_ms":2.25,)"
+         R"("error":{"sampling":0.03125,"spectral":0.0625,"total":0.125},"exposure_ev":-1.5,"frame_seq":12,"ledger":{"absorbed":0.25,"cut":0.015625,"deposited":7.0,)"
          R"("left_map":0.03125,"no_receiver":2.0,"on_casters":8.0,"reflected":0.5,"rejected":0.0625,)"
          R"("total_reflection":0.125},"op":"stats","photons":25000,"plan":[{"pass":"photon_trace",)"
          R"("reason":"the light moved","run":true,"without":["absorption: none"]},{"pass":"gap_fill","reason":"not asked for","run":false}],)"
@@ -199,7 +201,7 @@ State fullState() {
     state.camera = {Vec3{0, 1, 3}, Vec3{0, 0.5, 0}, Vec3{0, 0, 1}, 35.0, -2.5};
     state.environmentColor = Vec3{0.1, 0.2, 0.3};
     state.outsideIndex = 1.333;
-    state.transport = {TransportMode::Refined, kContinuous, {450, 550, 650}, 1024, 1024, 2, 12, true, false, true, 6, 16.5, 0.0};
+    state.transport = {TransportMode::Traced, kContinuous, {450, 550, 650}, 1024, 1024, 2, 12, true, false, true, 6, 16, true, 16.5, 0.02};
     state.stream = {Target::Pass, "photon_list", Encoding::Png, Sample::U8, true, 640, 480, 85, 30.0};
     return state;
 }

@@ -21,8 +21,8 @@ TEST(State, AnEmptyDocumentIsEveryDefault) {
         toJson(State{}).dump(),
         R"({"camera":{"exposure":["auto"]},"environment":{},"lights":{},"materials":{},"scene":["builtin","gem"],)"
         R"("stream":{"bands":"rgb","encoding":"jpeg","height":512,"max_fps":60.0,"quality":["auto"],"sample":"u8",)"
-        R"("target":"composite","width":512},"transport":{"back_steps":4,"budget_ms":0.0,"filter":true,)"
-        R"("force_dispersive":false,"gap_fill":false,"hierarchy_levels":3,"map_size":512,"mode":"refined","photon_grid":0,)"
+        R"("target":"composite","width":512},"transport":{"back_steps":4,"bounces":8,"budget_ms":0.0,"exact_receivers":false,)"
+        R"("filter":true,"force_dispersive":false,"gap_fill":false,"hierarchy_levels":3,"map_size":512,"mode":"auto","photon_grid":0,)"
         R"("receiver_steps":6,"target_error":0.0,"wavelengths":"continuous"}})");
 }
 
@@ -98,7 +98,7 @@ TEST(State, UnknownFieldsMatterOnlyWhenStrict) {
 TEST(State, OnlyKnownChoicesAreTaken) {
     for (const auto& [document, field] : std::vector<std::pair<const char*, const char*>>{
              {R"({"scene":["file","/etc/passwd"]})", "scene[0]"},
-             {R"({"transport":{"mode":"traced"}})", "transport.mode"},
+             {R"({"transport":{"mode":"bidirectional"}})", "transport.mode"},
              {R"({"transport":{"wavelengths":"endless"}})", "transport.wavelengths"},
              {R"({"stream":{"encoding":"zstd"}})", "stream.encoding"},
              {R"({"stream":{"sample":"u16"}})", "stream.sample"},
@@ -149,15 +149,27 @@ TEST(State, TaggedArraysHaveTheirOwnLengths) {
                                  R"({"transport":{"gap_fill":1}})",
                                  R"({"transport":{"mode":"thesis","wavelengths":8}})",
                                  R"({"transport":{"mode":"thesis","wavelengths":[500]}})",
-                                 R"({"transport":{"budget_ms":16,"target_error":0.01}})",
+                                 R"({"transport":{"mode":"refined","budget_ms":16,"target_error":0.01}})",
+                                 R"({"transport":{"mode":"thesis","budget_ms":16,"target_error":0.01}})",
+                                 R"({"transport":{"exact_receivers":1}})",
+                                 R"({"transport":{"bounces":"all"}})",
                                  R"({"environment":{"color":5}})"}) {
         const auto state = decodeState(Json::parse(document));
         EXPECT_FALSE(state.has_value()) << document;
     }
 }
 
+// So many photons a frame, and so many frames.
+TEST(State, WhatConvergesHasABudgetAndATarget) {
+    for (const char* mode : {"auto", "traced"}) {
+        const auto state = decodeState(Json{{"transport", {{"mode", mode}, {"budget_ms", 16}, {"target_error", 0.02}}}});
+        ASSERT_TRUE(state.has_value()) << mode;
+        EXPECT_EQ(decodeState(toJson(*state)), state);
+    }
+}
+
 TEST(State, WavelengthsMayBeContinuous) {
-    for (const char* mode : {"refined", "thesis"}) {
+    for (const char* mode : {"auto", "traced", "refined", "thesis"}) {
         const auto state = decodeState(Json{{"transport", {{"mode", mode}, {"wavelengths", "continuous"}}}});
         ASSERT_TRUE(state.has_value()) << mode;
         EXPECT_EQ(state->transport.wavelengths, kContinuous);
