@@ -11,7 +11,6 @@ int main(int argc, char** argv) {
     addEstimate(app);
     addFrame(app);
     addOmissions(app);
-    addPeers(app);
     addReference(app);
     addStability(app);
     addStream(app);
