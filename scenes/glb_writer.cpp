@@ -165,6 +165,13 @@ json matteMaterial(const std::string& name, const glm::vec3& color) {
          {{"baseColorFactor", {color.r, color.g, color.b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
 }
 
+json metalMaterial(const std::string& name, const glm::vec3& color) {
+    return {
+        {"name", name},
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {color.r, color.g, color.b, 1.0}}, {"metallicFactor", 1.0}, {"roughnessFactor", 0.1}}}};
+}
+
 json spotLight(const std::string& name, double candela, double innerDeg, double outerDeg) {
     return {{"name", name},
             {"type", "spot"},

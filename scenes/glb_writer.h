@@ -44,6 +44,8 @@ class GlbWriter {
 // A material that light goes through: a caster. `extras` is extras.caustream (docs/units.md): cauchy, absorption...
 nlohmann::json glassMaterial(const std::string& name, double ior, nlohmann::json extras);
 nlohmann::json matteMaterial(const std::string& name, const glm::vec3& color);
+// Polished: a mirror (docs/units.md).
+nlohmann::json metalMaterial(const std::string& name, const glm::vec3& color);
 // Half angles in degrees, intensity in candela.
 nlohmann::json spotLight(const std::string& name, double candela, double innerDeg, double outerDeg);
 

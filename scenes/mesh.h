@@ -23,6 +23,9 @@ void smoothNormals(Mesh& mesh);
 void append(Mesh& mesh, const Mesh& other);
 void transform(Mesh& mesh, const glm::mat4& matrix);
 
+// Moves it up or down until its lowest point is at `y`.
+void standAt(Mesh& mesh, double y);
+
 // Unit icosahedron subdivided `levels` times: 20 * 4^levels faces. Vertices on the sphere, smooth normals.
 Mesh icosphere(int levels, const glm::dvec3& centre, double radius);
 

@@ -44,6 +44,12 @@ void transform(Mesh& mesh, const glm::mat4& matrix) {
     for (glm::vec3& n : mesh.normals) n = glm::normalize(normalMatrix * n);
 }
 
+void standAt(Mesh& mesh, double y) {
+    float lowest = mesh.positions.at(0).y;
+    for (const glm::vec3& p : mesh.positions) lowest = std::min(lowest, p.y);
+    for (glm::vec3& p : mesh.positions) p.y += static_cast<float>(y) - lowest;
+}
+
 Mesh icosphere(int levels, const glm::dvec3& centre, double radius) {
     const double phi = std::numbers::phi;
     std::vector<glm::dvec3> points{{-1, phi, 0}, {1, phi, 0}, {-1, -phi, 0}, {1, -phi, 0},

@@ -1,13 +1,12 @@
 #include "scenes/wood.h"
 
-#include <png.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
-#include <stdexcept>
-#include <string>
+
+#include "scenes/png.h"
 
 namespace caustream::scenes {
 
@@ -63,17 +62,7 @@ std::vector<std::uint8_t> woodPng(int width, int height) {
             for (int c = 0; c < 3; ++c)
                 texels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(color[c], 0.0, 1.0))));
         }
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(width);
-    image.height = static_cast<png_uint_32>(height);
-    image.format = PNG_FORMAT_RGB;
-    std::vector<std::uint8_t> png(PNG_IMAGE_PNG_SIZE_MAX(image));
-    png_alloc_size_t size = png.size();
-    if (!png_image_write_to_memory(&image, png.data(), &size, 0, texels.data(), 0, nullptr))
-        throw std::runtime_error(std::string("cannot write the wood: ") + image.message);
-    png.resize(size);
-    return png;
+    return encodePng(width, height, texels);
 }
 
 }  // namespace caustream::scenes

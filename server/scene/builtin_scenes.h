@@ -10,7 +10,7 @@
 namespace caustream::scene {
 
 struct BuiltinScene {
-    std::string_view name;       // "sphere", "ring", "gem", "bunny", "glass", "prism"
+    std::string_view name;       // "gem", "sphere"... the list of scenes/CMakeLists.txt
     std::string_view glb;
 };
 std::span<const BuiltinScene> builtinScenes();
