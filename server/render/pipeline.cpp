@@ -306,8 +306,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
         }
     }
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
-    for (const int judged : {0, 1}) impl_->shaders.program("map_resolve", {{"FINEST", 1}, {"JUDGED", judged}});
-    impl_->shaders.program("map_resolve", {{"FINEST", 0}, {"JUDGED", 1}});
+    MapResolve::warmUp(impl_->shaders);
     impl_->shaders.program("spectral_step");
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
     report(1);

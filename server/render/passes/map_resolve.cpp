@@ -2,14 +2,14 @@
 
 namespace caustream::render {
 
-MapResolve::MapResolve(gl::ShaderLibrary& shaders)
-    : shaders_(shaders), linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "map resolve")) {}
+namespace {
+std::vector<gl::Flag> flags(bool finest, bool judged, bool above) { return {{"ABOVE", above}, {"FINEST", finest}, {"JUDGED", judged}}; }
+}  // namespace
 
 void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger) {
     texels_.view(in.map, GL_RGBA32UI);
     glBindTextureUnit(1, texels_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, layout::kBindLedger, ledger.get());
-    glBindSampler(0, linear_.get());
     glBindTextureUnit(2, in.receivers.get());
     for (int level = in.levels - 1; level >= 0; --level) {
         const int size = in.size >> level;
@@ -18,7 +18,8 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
         gl::Texture& out = level == 0 ? concentration : coarse_[static_cast<std::size_t>(level)];
         out.ensure(size, size, GL_RGBA32F, "spectral map");
 
-        const GLuint program = shaders_.program("map_resolve", {{"FINEST", level == 0 ? 1 : 0}, {"JUDGED", in.judged ? 1 : 0}});
+        const bool above = level + 1 < in.levels;
+        const GLuint program = shaders_.program("map_resolve", flags(level == 0, in.judged, above));
         glUseProgram(program);
         const gl::Uniforms uniforms(program);
         setView(uniforms, "u_view", in.view);
@@ -26,17 +27,22 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
             .set("u_xyzToRgb", in.xyzToRgb)
             .set("u_fluxPerFixed", static_cast<float>(in.fluxPerFixed))
             .set("u_luminance", static_cast<float>(in.ledgerPerFixed))
-            .set("u_hasAbove", level + 1 < in.levels)
             .set("u_above", 0)
             .set("u_map", 1)
             .set("u_receivers", 2);
-        if (level + 1 < in.levels) glBindTextureUnit(0, coarse_[static_cast<std::size_t>(level) + 1].get());
+        if (above) glBindTextureUnit(0, coarse_[static_cast<std::size_t>(level) + 1].get());
         glBindImageTexture(0, out.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-        const int perGroup = layout::kGroupSize * layout::kScanTexels;
-        glDispatchCompute(static_cast<GLuint>((size * size + perGroup - 1) / perGroup), 1, 1);
+        const int runs = (size + layout::kScanTexels - 1) / layout::kScanTexels * ((size + 1) / 2);
+        glDispatchCompute(static_cast<GLuint>((runs + layout::kGroupSize - 1) / layout::kGroupSize), 1, 1);
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);   // this level -> the next finer
     }
-    glBindSampler(0, 0);
+}
+
+void MapResolve::warmUp(gl::ShaderLibrary& shaders) {
+    for (const bool above : {false, true}) {
+        for (const bool finest : {false, true}) shaders.program("map_resolve", flags(finest, true, above));
+    }
+    shaders.program("map_resolve", flags(true, false, false));
 }
 
 }  // namespace caustream::render

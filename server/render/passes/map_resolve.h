@@ -24,13 +24,13 @@ class MapResolve {
         bool judged;                      // book what estimateError() asks for
     };
 
-    explicit MapResolve(gl::ShaderLibrary& shaders);
+    explicit MapResolve(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
     // Fills `concentration` (RGBA32F; rgb 1 = as bright as direct light, a the receiver's layer value) and books the deposited flux in `ledger`.
     void run(const Inputs& in, gl::Texture& concentration, const gl::Buffer& ledger);
+    static void warmUp(gl::ShaderLibrary& shaders);
 
    private:
     gl::ShaderLibrary& shaders_;
-    gl::Sampler linear_;
     gl::BufferTexture texels_;                              // the map as RGBA32UI
     std::array<gl::Texture, layout::kMostLevels> coarse_;   // RGBA32F XYZ and even - odd Y, by level; the finest goes to the caller
 };
