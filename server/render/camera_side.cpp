@@ -54,7 +54,7 @@ void CameraSide::seeThrough(const Inputs& in, gl::StageTimer& timer) {
         }
         timer.stage(through, [&] {
             if (thesis) return thesisRefraction_.run({in.view, front_, back_, depth_, glass, in.lighting}, color_);
-            refraction_.run({in.view, front_, back_, box, object->bounds, depth_, glass, in.lighting},
+            refraction_.run({in.view, front_, back_, box, object->bounds, depth_, glass, in.lighting, &casters_.frontDepth()},
                             request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true, request.forced}
                                           : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false, request.forced},
                             color_);

@@ -43,8 +43,8 @@ PixelBox CameraCasters::run(const Inputs& in, const Outputs& out) {
         glScissor(box.x, box.y, box.width, box.height);
     }
     const CasterLayers::Inputs layers{in.scene, in.caster, in.view, in.width, in.height, nullptr};
-    layers_.run(layers, CasterLayers::Side::Front, out.front);
     layers_.run(layers, CasterLayers::Side::Back, out.back);
+    layers_.run(layers, CasterLayers::Side::Front, out.front);   // last: its depth stays
     glDisable(GL_SCISSOR_TEST);
     return box;
 }

@@ -37,6 +37,8 @@ class CameraCasters {
 
     // The box that was drawn; when it is empty nothing was.
     PixelBox run(const Inputs& in, const Outputs& out);
+    // The front layer's values once more, DEPTH_COMPONENT32F: a pass over the box that tests against it skips what is empty.
+    const gl::Texture& frontDepth() const { return layers_.depth(); }
 
    private:
     CasterLayers layers_;

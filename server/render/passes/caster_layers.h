@@ -28,6 +28,8 @@ class CasterLayers {
     // Fills `layer` (RGBA32F, made anew if its size is another): xyz unit outward normal in view space, interpolated;
     // w the layer value of view.glsl, 0 where there is no surface. Back: the nearest surface that faces away.
     void run(const Inputs& in, Side side, gl::Texture& layer);
+    // Of the last run: the layer values once more, as a depth image.
+    const gl::Texture& depth() const { return depth_; }
 
    private:
     gl::ShaderLibrary& shaders_;

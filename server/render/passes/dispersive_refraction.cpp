@@ -85,8 +85,13 @@ void DispersiveRefraction::begin(const gl::Texture& frame) {
 
 void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::Texture& frame) {
     const int width = frame.width(), height = frame.height();
-    const gl::Framebuffer target = gl::makeFramebuffer("dispersive_refraction", {frame.get()});
+    const gl::Framebuffer target = gl::makeFramebuffer("dispersive_refraction", {frame.get()}, in.frontDepth ? in.frontDepth->get() : 0);
     glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+    if (in.frontDepth) {   // the triangle lies at 0, as an empty layer does: it is drawn where the layer is more
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_LESS);
+        glDepthMask(GL_FALSE);
+    }
     glViewport(0, 0, width, height);
     glEnable(GL_SCISSOR_TEST);
     glScissor(in.box.x, in.box.y, in.box.width, in.box.height);
@@ -126,6 +131,8 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindSamplers(0, 5, nullptr);
     glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
 
     // The next caster sees this one.
     glCopyImageSubData(frame.get(), GL_TEXTURE_2D, 0, in.box.x, in.box.y, 0, background_.get(), GL_TEXTURE_2D, 0,

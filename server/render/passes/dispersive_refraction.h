@@ -37,6 +37,7 @@ class DispersiveRefraction {
         const gl::Texture& receiversDepth;    // DEPTH_COMPONENT32F layer of camera_receivers
         const Glass& glass;
         const Lighting& lighting;
+        const gl::Texture* frontDepth = nullptr;   // of `front`: blocks of pixels that hold none of it cost nothing
     };
     struct Settings {
         int backSteps = 4;                    // Newton steps to the exit point, 1..16
