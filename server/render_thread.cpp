@@ -23,20 +23,32 @@ std::string hashText(std::uint64_t hash) {
     return text;
 }
 
-session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& frame, stream::Encoded&& encoded) {
+std::uint32_t flagsOf(const FrameJob& job, const std::optional<render::Convergence>& reached) {
+    if (job.requestId) {
+        return protocol::kFrameStill | (reached && reached->converged ? protocol::kFrameConverged : 0u);
+    }
+    if (job.converge) {
+        return job.endsConvergence(reached) ? protocol::kFrameStill | protocol::kFrameConverged : 0u;
+    }
+    return job.still ? protocol::kFrameStill : 0u;
+}
+
+session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& frame, protocol::Encoding encoding,
+                                     stream::Encoded&& encoded) {
     session::OutgoingFrame outgoing;
-    outgoing.header = frameHeader(*job.shown.view, frame);
+    outgoing.header = frameHeader(*job.shown.view, frame, encoding);
     protocol::FrameHeader& header = outgoing.header;
-    header.flags = job.still || job.requestId ? protocol::kFrameStill : 0u;
+    header.flags = flagsOf(job, frame.stats.convergence);
     header.inputSeq = job.shown.inputSeq;
     header.stateRev = job.shown.rev;
     header.clientUs = job.shown.clientUs;
     header.holdUs = static_cast<std::uint32_t>(job.startedUs - job.shown.changedUs);
     header.encodeUs = static_cast<std::uint32_t>(encoded.encodeMs * 1e3);
     header.payloadLen = static_cast<std::uint32_t>(encoded.buffer.size() - protocol::kFrameHeaderBytes);
-    outgoing.info = streamInfo(*job.shown.view, frame);
+    outgoing.info = streamInfo(*job.shown.view, frame, encoding);
     outgoing.stats = frameStats(frame);
     outgoing.stats.encodeMs = encoded.encodeMs;
+    outgoing.resting = job.resting();
     outgoing.requestId = job.requestId;
     outgoing.mapHash = hashText(frame.mapHash);
     outgoing.buffer = std::move(encoded.buffer);
@@ -137,6 +149,7 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
         render::Request request = job.shown.view->request;
         // An answer names its map's hash; the map itself has no anti-aliasing to pay for.
         request.still = job.still || (job.requestId && request.target == render::Target::Spectral);
+        request.converge = job.converge;
         frame = gpu.pipeline.run(request);
         ++frames_;
         renderMsTotal_ = renderMsTotal_ + frame.stats.renderMs;
@@ -146,18 +159,24 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
         log::error("render").with("message", error);
     }
     busySinceUs_ = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        scheduler_.drawn(job, frame.stats.convergence);
+    }
     if (!error.empty()) {
         deliver_({std::move(job), {}, std::move(error)});
         return;
     }
-    const stream::EncodeSettings settings = job.shown.view->encode;
-    encoders_.submit(std::move(frame), settings, [this, job = std::move(job)](render::Frame&& drawn, stream::Encoded&& encoded) {
-        if (!encoded.error.empty()) {
-            deliver_({job, {}, std::move(encoded.error)});
-            return;
-        }
-        deliver_({job, outgoingFrame(job, drawn, std::move(encoded)), {}});
-    });
+    const View& view = *job.shown.view;
+    const stream::EncodeSettings settings = job.endsConvergence(frame.stats.convergence) ? view.encodeLast : view.encode;
+    encoders_.submit(std::move(frame), settings,
+                     [this, job = std::move(job), encoding = settings.encoding](render::Frame&& drawn, stream::Encoded&& encoded) {
+                         if (!encoded.error.empty()) {
+                             deliver_({job, {}, std::move(encoded.error)});
+                             return;
+                         }
+                         deliver_({job, outgoingFrame(job, drawn, encoding, std::move(encoded)), {}});
+                     });
 }
 
 }  // namespace caustream

@@ -85,7 +85,7 @@ render::Transport transportOf(const protocol::TransportState& wanted) {
 }  // namespace
 
 tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
-                                                         std::shared_ptr<const scene::Scene> scene) {
+                                                         std::shared_ptr<const scene::Scene> scene, bool readsPng) {
     const protocol::StreamState& stream = state.stream;
     if (auto checked = checkStream(stream); !checked) {
         return tl::unexpected(std::move(checked.error()));
@@ -97,6 +97,10 @@ tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& 
     View view;
     view.stream = stream;
     view.encode = {.encoding = stream.encoding, .jpegQuality = stream.jpegQuality.value_or(kJpegQuality)};
+    view.encodeLast = view.encode;
+    if (stream.encoding == Encoding::Jpeg && readsPng) {
+        view.encodeLast.encoding = Encoding::Png;
+    }
     render::Request& request = view.request;
     request.scene = std::move(scene);
     request.camera = std::move(*camera);
@@ -117,11 +121,11 @@ tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& 
     return view;
 }
 
-protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame) {
+protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, Encoding encoding) {
     protocol::StreamInfo info;
     info.target = view.stream.target;
     info.pass = view.stream.pass;
-    info.encoding = view.stream.encoding;
+    info.encoding = encoding;
     info.sample = sampleOf(frame);
     info.width = static_cast<std::uint32_t>(frame.width);
     info.height = static_cast<std::uint32_t>(frame.height);
@@ -134,17 +138,17 @@ protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame) {
     return info;
 }
 
-protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame) {
+protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, Encoding encoding) {
     protocol::FrameHeader header;
     header.target = view.stream.target;
-    header.encoding = view.stream.encoding;
+    header.encoding = encoding;
     header.sample = sampleOf(frame);
     header.width = static_cast<std::uint16_t>(frame.width);
     header.height = static_cast<std::uint16_t>(frame.height);
     header.viewWidth = header.width;
     header.viewHeight = header.height;
     header.bands = static_cast<std::uint16_t>(frame.bands);
-    if (view.stream.encoding == Encoding::Jpeg) {
+    if (encoding == Encoding::Jpeg) {
         header.jpegQuality = static_cast<std::uint8_t>(view.encode.jpegQuality);
     }
     header.renderUs = static_cast<std::uint32_t>(frame.stats.renderMs * 1e3);

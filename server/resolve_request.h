@@ -12,19 +12,20 @@ namespace caustream {
 struct View {
     render::Request request;
     stream::EncodeSettings encode;
+    stream::EncodeSettings encodeLast;  // of a picture that has converged: JPEG's losses would outlast the wait for it
     protocol::StreamState stream;
 };
 
-// `scene` already has the document's lights and materials. Errors: a pass there is not, an encoding or samples
+// `scene` already has the document's lights and materials; a client that reads PNG gets its last picture as one. Errors: a pass there is not, an encoding or samples
 // this server does not have, a camera without a direction.
 tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
-                                                         std::shared_ptr<const scene::Scene> scene);
+                                                         std::shared_ptr<const scene::Scene> scene, bool readsPng = true);
 
 // What a frame of this view is, for `stream.info`; its epoch is the outbox's.
-protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame);
+protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, protocol::Encoding encoding);
 
 // Header and statistics of a rendered frame: all but what only the outbox and the scheduler know.
-protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame);
+protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, protocol::Encoding encoding);
 protocol::Stats frameStats(const render::Frame& frame);
 
 }  // namespace caustream

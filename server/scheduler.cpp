@@ -1,5 +1,6 @@
 #include "scheduler.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace caustream {
@@ -12,10 +13,25 @@ void noteWake(std::uint64_t& wakeUs, std::uint64_t candidateUs) {
 // Anti-aliasing makes a picture better; the spectral map has none.
 bool wantsStill(const Shown& shown) { return shown.view && shown.view->request.target == render::Target::Composite; }
 
+// Between two frames at the most that are wanted a second.
+std::uint64_t frameUs(const Shown& shown) { return static_cast<std::uint64_t>(1e6 / shown.view->stream.maxFps); }
+
 }  // namespace
 
-bool Scheduler::hasRoom(const Entry& entry) {
-    return entry.streaming && entry.shown.view && entry.occupied + entry.drawing < entry.window;
+bool FrameJob::endsConvergence(const std::optional<render::Convergence>& reached) const {
+    return converge && reached && reached->converged && (still || !wantsStill(shown));
+}
+
+// What was drawn before is no more.
+void Scheduler::startAnew(Entry& entry) {
+    entry.stillDue = wantsStill(entry.shown);
+    entry.convergence = Convergence::None;
+}
+
+// All that was to be shown was drawn, and there is room for more of it.
+bool Scheduler::rests(const Entry& entry) {
+    return entry.streaming && entry.shown.view && entry.version == entry.drawnVersion && entry.drawing == 0 &&
+           entry.occupied + entry.drawingResting < entry.window;
 }
 
 void Scheduler::show(SessionKey session, Shown shown) {
@@ -23,14 +39,14 @@ void Scheduler::show(SessionKey session, Shown shown) {
     entry.shown = std::move(shown);
     ++entry.version;
     entry.quietSinceUs = entry.shown.changedUs;
-    entry.stillDue = wantsStill(entry.shown);
+    startAnew(entry);
 }
 
 void Scheduler::setStreaming(SessionKey session, bool streaming) {
     Entry& entry = entries_.at(session);
     if (streaming && !entry.streaming) {
         entry.drawnVersion = 0;  // whoever starts has nothing to look at yet
-        entry.stillDue = wantsStill(entry.shown);
+        startAnew(entry);
     }
     entry.streaming = streaming;
 }
@@ -51,10 +67,22 @@ bool Scheduler::request(SessionKey session, std::uint32_t requestId, bool still)
     return true;
 }
 
+void Scheduler::drawn(const FrameJob& job, const std::optional<render::Convergence>& reached) {
+    if (job.requestId || outdated(job)) {
+        return;  // it says nothing of what the stream shows
+    }
+    Entry& entry = entries_.at(job.session);
+    entry.convergence = !reached                    ? Convergence::None
+                        : !reached->converged       ? Convergence::UnderWay
+                        : job.endsConvergence(reached) ? Convergence::Shown
+                                                    : Convergence::Reached;
+    entry.stillDue = entry.stillDue && !reached;
+}
+
 void Scheduler::finished(const FrameJob& job) {
     const auto entry = entries_.find(job.session);
     if (entry != entries_.end() && !job.requestId) {
-        --entry->second.drawing;
+        --(job.resting() ? entry->second.drawingResting : entry->second.drawing);
     }
 }
 
@@ -66,35 +94,40 @@ bool Scheduler::outdated(const FrameJob& job) const {
 void Scheduler::redrawAll() {
     for (auto& [session, entry] : entries_) {
         entry.drawnVersion = 0;
-        entry.stillDue = wantsStill(entry.shown);
+        startAnew(entry);
     }
 }
 
 std::optional<FrameJob> Scheduler::next(std::uint64_t nowUs, std::uint64_t& wakeUs) {
     wakeUs = 0;
-    auto job = takeTurn(false, nowUs, wakeUs);
-    return job ? job : takeTurn(true, nowUs, wakeUs);
-}
-
-std::optional<FrameJob> Scheduler::takeTurn(bool still, std::uint64_t nowUs, std::uint64_t& wakeUs) {
-    // From the one after the last served, around.
-    auto at = entries_.upper_bound(last_);
-    for (std::size_t i = 0; i < entries_.size(); ++i, ++at) {
-        if (at == entries_.end()) {
-            at = entries_.begin();
-        }
-        auto job = still ? takeStill(at->first, at->second, nowUs, wakeUs) : takeMoving(at->first, at->second, nowUs, wakeUs);
-        if (job) {
-            last_ = at->first;
+    constexpr std::array<Take, 3> kByUrgency = {&Scheduler::takeMoving, &Scheduler::takeStill, &Scheduler::takeConverging};
+    for (std::size_t i = 0; i < kByUrgency.size(); ++i) {
+        if (auto job = takeTurn(kByUrgency[i], last_[i], nowUs, wakeUs)) {
             return job;
         }
     }
     return std::nullopt;
 }
 
-FrameJob Scheduler::jobOf(SessionKey session, Entry& entry, bool still, std::uint64_t nowUs) {
-    ++entry.drawing;
-    return {.session = session, .shown = entry.shown, .still = still, .order = ++order_, .startedUs = nowUs};
+std::optional<FrameJob> Scheduler::takeTurn(Take take, SessionKey& last, std::uint64_t nowUs, std::uint64_t& wakeUs) {
+    // From the one after the last served, around.
+    auto at = entries_.upper_bound(last);
+    for (std::size_t i = 0; i < entries_.size(); ++i, ++at) {
+        if (at == entries_.end()) {
+            at = entries_.begin();
+        }
+        if (auto job = (this->*take)(at->first, at->second, nowUs, wakeUs)) {
+            last = at->first;
+            return job;
+        }
+    }
+    return std::nullopt;
+}
+
+FrameJob Scheduler::jobOf(SessionKey session, Entry& entry, bool still, bool converge, std::uint64_t nowUs) {
+    FrameJob job{.session = session, .shown = entry.shown, .still = still, .converge = converge, .order = ++order_, .startedUs = nowUs};
+    ++(job.resting() ? entry.drawingResting : entry.drawing);
+    return job;
 }
 
 std::optional<FrameJob> Scheduler::takeMoving(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
@@ -108,7 +141,9 @@ std::optional<FrameJob> Scheduler::takeMoving(SessionKey session, Entry& entry, 
                         .order = ++order_,
                         .startedUs = nowUs};
     }
-    if (!hasRoom(entry) || entry.version == entry.drawnVersion) {
+    // A resting frame that is being drawn takes no room: it is thrown away, as it shows what is no more.
+    const bool room = entry.streaming && entry.shown.view && entry.occupied + entry.drawing < entry.window;
+    if (!room || entry.version == entry.drawnVersion) {
         return std::nullopt;
     }
     if (nowUs < entry.notBeforeUs) {
@@ -116,12 +151,12 @@ std::optional<FrameJob> Scheduler::takeMoving(SessionKey session, Entry& entry, 
         return std::nullopt;
     }
     entry.drawnVersion = entry.version;
-    entry.notBeforeUs = nowUs + static_cast<std::uint64_t>(1e6 / entry.shown.view->stream.maxFps);
-    return jobOf(session, entry, false, nowUs);
+    entry.notBeforeUs = nowUs + frameUs(entry.shown);
+    return jobOf(session, entry, false, false, nowUs);
 }
 
 std::optional<FrameJob> Scheduler::takeStill(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
-    if (!hasRoom(entry) || !entry.stillDue || entry.drawing > 0 || entry.version != entry.drawnVersion) {
+    if (!rests(entry) || !entry.stillDue) {
         return std::nullopt;
     }
     const std::uint64_t dueUs = entry.quietSinceUs + kStillAfterUs;
@@ -130,7 +165,25 @@ std::optional<FrameJob> Scheduler::takeStill(SessionKey session, Entry& entry, s
         return std::nullopt;
     }
     entry.stillDue = false;
-    return jobOf(session, entry, true, nowUs);
+    return jobOf(session, entry, true, false, nowUs);
+}
+
+std::optional<FrameJob> Scheduler::takeConverging(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
+    const bool last = entry.convergence == Convergence::Reached;
+    if (!rests(entry) || (!last && entry.convergence != Convergence::UnderWay)) {
+        return std::nullopt;
+    }
+    const std::uint64_t dueUs = std::max({entry.shown.changedUs + kConvergeAfterUs, entry.notBeforeUs, entry.notRestingBeforeUs});
+    if (nowUs < dueUs) {
+        noteWake(wakeUs, dueUs);
+        return std::nullopt;
+    }
+    // Of its own: what moves next need not wait for it.
+    entry.notRestingBeforeUs = nowUs + frameUs(entry.shown);
+    if (last) {
+        entry.convergence = Convergence::Shown;
+    }
+    return jobOf(session, entry, last && wantsStill(entry.shown), true, nowUs);
 }
 
 }  // namespace caustream

@@ -2,6 +2,7 @@
 
 #include <openssl/crypto.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "log.h"
@@ -21,6 +22,7 @@ using protocol::DecodeError;
 using protocol::ErrorCode;
 
 constexpr std::uint64_t kUsPerS = 1'000'000;
+constexpr std::uint64_t kStatsEveryUs = kUsPerS, kConvergingStatsEveryUs = kUsPerS / 5;
 constexpr std::uint32_t kRetryMs = 2000;
 constexpr double kChunksPerS = 2000;                        // credit bounds the bytes, this the smallest of chunks
 constexpr std::size_t kMaxDeferredBytes = 4u << 20;         // while a scene loads
@@ -110,6 +112,7 @@ void Viewer::on(const protocol::Hello& hello) {
     session_.emplace(session::randomId(), desk_.limits, hello.strict);
     ++desk_.sessions;
     outbox_.setMaxInflight(hello.maxInflight);
+    readsPng_ = std::ranges::find(hello.caps, "png") != hello.caps.end();
     const auto withdraw = [this, id = hello.id](DecodeError error) {
         session_.reset();
         --desk_.sessions;
@@ -222,6 +225,7 @@ std::optional<session::Outgoing> Viewer::next() {
     std::optional<session::Outgoing> message = outbox_.next(session::nowUs());
     if (message && message->binary) {
         updateOccupied();
+        sendStats(session::nowUs());
     }
     return message;
 }
@@ -246,7 +250,7 @@ void Viewer::deliver(Delivery&& delivery) {
     } else if (job.requestId) {
         outbox_.requested(std::move(delivery.frame));
     } else {
-        stale = job.still && desk_.renderer->schedule([&](Scheduler& scheduler) { return scheduler.outdated(job); });
+        stale = job.resting() && desk_.renderer->schedule([&](Scheduler& scheduler) { return scheduler.outdated(job); });
         if (!stale) {
             outbox_.streamed(job.order, std::move(delivery.frame));
         }
@@ -275,11 +279,19 @@ void Viewer::tick(std::uint64_t nowUs) {
         fail(problem(ErrorCode::RateLimited, "replies are not read"));
         return;
     }
-    if (wantsStats_ && nowUs - statsSentUs_ >= kUsPerS) {
-        if (const auto stats = outbox_.takeStats()) {
-            statsSentUs_ = nowUs;
-            send(*stats);
-        }
+    sendStats(nowUs);
+}
+
+// What waits for a picture to converge wants to see it come nearer, and that it is there.
+void Viewer::sendStats(std::uint64_t nowUs) {
+    const auto& newest = outbox_.newestStats();
+    if (!wantsStats_ || !newest) {
+        return;
+    }
+    const std::uint64_t everyUs = newest->convergence ? kConvergingStatsEveryUs : kStatsEveryUs;
+    if (outbox_.newestConverged() || nowUs - statsSentUs_ >= everyUs) {
+        statsSentUs_ = nowUs;
+        send(*outbox_.takeStats());
     }
 }
 

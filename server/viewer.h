@@ -100,6 +100,7 @@ class Viewer {
     void sendState();
     void setStreaming(std::uint32_t id, bool streaming);
     void updateOccupied();
+    void sendStats(std::uint64_t nowUs);
 
     Desk& desk_;
     net::Connection& connection_;
@@ -117,7 +118,7 @@ class Viewer {
     std::uint32_t nextAsset_ = 1;
 
     std::uint32_t requestsPending_ = 0;
-    bool streaming_ = false, wantsStats_ = false;
+    bool streaming_ = false, wantsStats_ = false, readsPng_ = false;
     std::uint64_t statsSentUs_ = 0;
 };
 

@@ -119,7 +119,7 @@ std::optional<DecodeError> Viewer::finish(protocol::Applied applied, std::shared
     if (!proposal) {
         return proposal.error();
     }
-    auto view = resolveRequest(proposal->applied.state, proposal->resolved);
+    auto view = resolveRequest(proposal->applied.state, proposal->resolved, readsPng_);
     if (!view) {
         return view.error();
     }
@@ -133,7 +133,7 @@ std::optional<DecodeError> Viewer::finish(protocol::Applied applied, std::shared
                 .inputSeq = session_->inputSeq,
                 .clientUs = session_->inputClientUs,
                 .changedUs = session::nowUs()};
-    outbox_.discardStill();
+    outbox_.discardResting();
     desk_.renderer->schedule([&](Scheduler& scheduler) {
         if (!std::exchange(ready_, true)) {
             scheduler.add(connection_.id());

@@ -17,8 +17,8 @@ bool sameEpoch(protocol::StreamInfo a, const protocol::StreamInfo& b) {
 
 }  // namespace
 
-void Outbox::discardStill() {
-    if (const auto& waiting = mailbox_.peek(); waiting && (waiting->header.flags & protocol::kFrameStill)) {
+void Outbox::discardResting() {
+    if (const auto& waiting = mailbox_.peek(); waiting && waiting->resting) {
         mailbox_.clear();
     }
 }
@@ -32,6 +32,11 @@ bool Outbox::acknowledge(const protocol::Ack& ack, std::uint64_t nowUs) {
         waiting_.pop_front();
     }
     return true;
+}
+
+// Frames at rest leave the window's last place to what moves next, unless it is the only one.
+bool Outbox::mayLeave(const OutgoingFrame& frame) const {
+    return unacknowledged() < (frame.resting && window_ > 1 ? window_ - 1 : window_);
 }
 
 void Outbox::stage(OutgoingFrame frame) {
@@ -57,7 +62,7 @@ std::optional<Outgoing> Outbox::next(std::uint64_t nowUs) {
         if (!requested_.empty()) {
             stage(std::move(requested_.front()));
             requested_.pop_front();
-        } else if (mailbox_.peek() && unacknowledged() < window_) {
+        } else if (mailbox_.peek() && mayLeave(*mailbox_.peek())) {
             stage(*mailbox_.take());
         }
     }
@@ -79,6 +84,7 @@ std::optional<Outgoing> Outbox::next(std::uint64_t nowUs) {
     sentBytes_ += frame.buffer.size();
     frame.stats.frameSeq = frame.header.frameSeq;
     stats_ = std::move(frame.stats);
+    newestConverged_ = (frame.header.flags & protocol::kFrameConverged) != 0;
     return Outgoing{std::move(frame.buffer), true};
 }
 

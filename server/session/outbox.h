@@ -23,6 +23,7 @@ struct OutgoingFrame {
     protocol::FrameHeader header;
     protocol::StreamInfo info;
     protocol::Stats stats;                    // frameSeq and the window's numbers are filled by the outbox
+    bool resting = false;                     // drawn because nothing moved
     std::optional<std::uint32_t> requestId;   // of the frame.request that it answers
     std::string mapHash;                      // for that answer
 };
@@ -35,8 +36,8 @@ class Outbox {
     void streamed(std::uint64_t order, OutgoingFrame frame) { mailbox_.put(order, std::move(frame)); }
     void requested(OutgoingFrame frame) { requested_.push_back(std::move(frame)); }
 
-    // A still that waits shows what is no more; a frame of a moving picture is still worth its time.
-    void discardStill();
+    // What was drawn at rest and waits shows what is no more; a frame of a moving picture is still worth its time.
+    void discardResting();
 
     // Cumulative. False when `ack` names a frame that was not sent: nothing changes then.
     bool acknowledge(const protocol::Ack& ack, std::uint64_t nowUs);
@@ -68,6 +69,9 @@ class Outbox {
 
     // Of the newest frame that left, with this connection's numbers; nothing before the first and once it was taken.
     std::optional<protocol::Stats> takeStats();
+    const std::optional<protocol::Stats>& newestStats() const { return stats_; }
+    // That frame ended its state's convergence.
+    bool newestConverged() const { return newestConverged_; }
 
    private:
     static constexpr std::uint32_t kWindow = 2;  // one on the screen, one on its way
@@ -75,6 +79,7 @@ class Outbox {
         std::uint32_t seq;
         std::uint64_t atUs;
     };
+    bool mayLeave(const OutgoingFrame& frame) const;
     void stage(OutgoingFrame frame);
     protocol::Stats withConnection(protocol::Stats stats) const;
 
@@ -84,6 +89,7 @@ class Outbox {
     std::optional<OutgoingFrame> staged_;  // leaves once texts_ is empty: its stream.info and reply stand there
     std::optional<protocol::StreamInfo> info_;
     std::optional<protocol::Stats> stats_;
+    bool newestConverged_ = false;
     std::deque<Sent> waiting_;  // frames of the stream only
     std::uint32_t window_ = kWindow, sent_ = 0;
     std::uint64_t sentBytes_ = 0;

@@ -198,12 +198,41 @@ TEST(OutboxTest, AnAnswerPassesTheWindowWithItsReply) {
 
 TEST(OutboxTest, InputDiscardsAWaitingStill) {
     Outbox outbox;
-    outbox.streamed(1, frame(1, protocol::kFrameStill));
-    outbox.discardStill();
+    OutgoingFrame still = frame(1, protocol::kFrameStill);
+    still.resting = true;
+    outbox.streamed(1, std::move(still));
+    outbox.discardResting();
     EXPECT_EQ(leave(outbox), "");
     outbox.streamed(2, frame(2));
-    outbox.discardStill();
+    outbox.discardResting();
     EXPECT_EQ(leave(outbox), "stream.info");
+}
+
+TEST(OutboxTest, WhatRestsLeavesRoomForWhatMoves) {
+    const auto resting = [](std::uint32_t rev) {
+        OutgoingFrame outgoing = frame(rev);
+        outgoing.resting = true;
+        return outgoing;
+    };
+    Outbox outbox;
+    outbox.streamed(1, resting(1));
+    leave(outbox);
+    EXPECT_EQ(leave(outbox), "frame 1 1");
+    outbox.streamed(2, resting(1));
+    EXPECT_EQ(leave(outbox), "") << "one is on its way, the other place is for what moves";
+    EXPECT_EQ(outbox.occupied(), 2u);
+    outbox.discardResting();
+    outbox.streamed(3, frame(2));
+    EXPECT_EQ(leave(outbox), "frame 2 2");
+    outbox.acknowledge({.seq = 2}, 5);
+    outbox.streamed(4, resting(2));
+    EXPECT_EQ(leave(outbox), "frame 3 2");
+
+    Outbox narrow;
+    narrow.setMaxInflight(1);
+    narrow.streamed(1, resting(1));
+    leave(narrow);
+    EXPECT_EQ(leave(narrow), "frame 1 1") << "a window of one has no place to spare";
 }
 
 TEST(TokenBucketTest, LetsABurstAndThenTheRateThrough) {
