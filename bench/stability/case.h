@@ -16,8 +16,10 @@ struct Setup {
     bool ownWavelengths = false;             // the case is about them
     std::string jumps;                       // why a small change of the light may change the map at will; empty: it must not
     bool roundTrip = false;                  // the light goes round and comes back instead of the other checks
-    // What is special about the case's energy: a sentence when it is wrong, empty otherwise. Refined transport only.
-    std::function<std::string(const render::EnergyLedger&)> expect;
+    // What is special about the case's energy: a sentence when it is wrong, empty otherwise. Of every mode that must pass,
+    // of refined transport alone, of traced alone.
+    using Expectation = std::function<std::string(const render::EnergyLedger&)>;
+    Expectation expect, expectRefined = {}, expectTraced = {};
 };
 
 inline constexpr const char* kLargeGroup = "large";   // cases that take seconds each
@@ -39,6 +41,8 @@ std::vector<Case> glassCases();              // dispersion, absorption, what is 
 std::vector<Case> lightCases();              // where the light stands, cones, spectra, cookies
 std::vector<Case> casterCases();             // shapes, broken meshes, how large and how many
 std::vector<Case> receiverCases();           // what the light falls on; scale and place of the whole scene
+std::vector<Case> tracedCases();             // what exact surfaces find hard
+std::vector<Case> mirrorCases();             // casters that reflect
 std::vector<Case> optionCases();             // wavelengths, map and grid, steps at their limits; round trips
 std::vector<Case> builtinCases();            // the scenes that come with the server
 Case randomCase(std::uint64_t seed);         // everything above at once, drawn by `seed` > 0

@@ -15,7 +15,7 @@ namespace {
 using namespace stability;
 
 struct StabilityOptions {
-    std::string gpu = "software", mode, only, markdown, json, pictures;
+    std::string gpu = "software", mode, only, group, markdown, json, pictures;
     int random = 80, frames = 48;
     bool list = false;
 };
@@ -23,6 +23,10 @@ struct StabilityOptions {
 // The cases asked for: all, one by its name, or one by a seed that may never have been drawn before.
 std::vector<Case> chosenCases(const StabilityOptions& options) {
     std::vector<Case> cases = allCases(options.random);
+    if (!options.group.empty()) {
+        std::erase_if(cases, [&](const Case& one) { return one.group != options.group; });
+        if (cases.empty()) throw Error("no group \"" + options.group + "\"; the table's second column names them");
+    }
     if (options.only.empty()) return cases;
     for (Case& one : cases) {
         if (one.name == options.only) return {std::move(one)};
@@ -88,6 +92,7 @@ void addStability(CLI::App& app) {
     const auto options = std::make_shared<StabilityOptions>();
     CLI::App* command = app.add_subcommand("stability", "stiff, extreme and random scenes: finite, closed, repeatable, steady; exit status 1 if one is not");
     command->add_option("--case", options->only, "one alone, by its name or by any seed");
+    command->add_option("--group", options->group, "one group alone: glass, light, caster, nested, aimed, bounces, mirror, receiver, ...");
     command->add_option("--mode", options->mode, "one alone");
     command->add_option("--random", options->random, "random scenes, seeds 1 to this")->check(CLI::Range(0, 1'000'000))->capture_default_str();
     command->add_option("--frames", options->frames, "frames of a light that goes round and comes back")->check(CLI::Range(2, 1'000'000))->capture_default_str();

@@ -19,8 +19,11 @@ namespace {
 
 const std::vector<Mode> kModes = {{.name = "refined"},
                                   {.name = "continuous", .wavelengths = render::kContinuous},
+                                  {.name = "traced", .transport = render::Mode::Traced},
+                                  {.name = "traced-continuous", .transport = render::Mode::Traced, .wavelengths = render::kContinuous},
                                   {.name = "thesis", .transport = render::Mode::Thesis, .mustPass = false}};
 
+constexpr int kConvergingFrames = 3;
 constexpr int kLargestBandedMap = 512;   // bands are summed on the CPU: larger ones take seconds and show nothing new
 
 std::string number(double value) {
@@ -49,6 +52,7 @@ class Examination {
         } else {
             checkStill();
             checkMoving();
+            if (traced()) checkConverging();
             checkBands();
             checkSmallChange();
         }
@@ -57,6 +61,8 @@ class Examination {
     }
 
    private:
+    bool traced() const { return mode_.transport == render::Mode::Traced; }
+
     void startAnew() {
         pipeline_.reset();
         pipeline_ = std::make_unique<render::Pipeline>(*renderer_.context, renderer_.shaders);
@@ -105,8 +111,10 @@ class Examination {
         }
         if (first.pixels != second.pixels || firstImages.size() != secondImages.size()) fail("bits", "of the picture");
         outcome_.photons = first.stats.photons, outcome_.ledger = first.stats.ledger, outcome_.warnings = first.stats.warnings;
-        if (setup_.expect && mode_.mustPass) {
-            if (std::string wrong = setup_.expect(first.stats.ledger); !wrong.empty()) fail("energy", std::move(wrong));
+        if (!mode_.mustPass) return;
+        for (const Setup::Expectation& expect : {setup_.expect, traced() ? setup_.expectTraced : setup_.expectRefined}) {
+            if (!expect) continue;
+            if (std::string wrong = expect(first.stats.ledger); !wrong.empty()) fail("energy", std::move(wrong));
         }
     }
 
@@ -115,8 +123,32 @@ class Examination {
         images("moving");
     }
 
+    // Frames at rest, twice from nothing: more photons, no fewer, and the same bits in the end.
+    void checkConverging() {
+        render::Request request = request_;
+        render::Frame first, second;
+        for (render::Frame* last : {&first, &second}) {
+            startAnew();
+            request.converge = request.still = false;
+            std::uint64_t photons = 0;
+            for (int i = 0; i <= kConvergingFrames; ++i) {
+                if (i == kConvergingFrames) request.still = true;
+                *last = frame(request, "a picture at rest");
+                request.converge = true;
+                const auto& convergence = last->stats.convergence;
+                if (!convergence) continue;
+                if (!std::isfinite(convergence->error) || !(convergence->progress >= 0.0 && convergence->progress <= 1.0)) fail("finite", "how far it has converged");
+                if (convergence->photons < photons) fail("converge", "loses photons");
+                photons = convergence->photons;
+            }
+            images("at rest");
+        }
+        if (first.mapHash != second.mapHash) fail("bits", "of the map at rest");
+        if (first.pixels != second.pixels) fail("bits", "of the picture at rest");
+    }
+
     void checkBands() {
-        if (request_.transport.mapSize > kLargestBandedMap || mode_.transport != render::Mode::Refined) return;
+        if (request_.transport.mapSize > kLargestBandedMap || mode_.transport == render::Mode::Thesis) return;
         render::Request request = request_;
         request.target = render::Target::Spectral;
         request.wavelengthBands = true;

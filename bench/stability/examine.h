@@ -28,7 +28,7 @@ struct Renderer {
 };
 
 struct Failure {
-    std::string check;                    // finite, ledger, bits, GL, change, energy, error
+    std::string check;                    // finite, ledger, bits, GL, change, energy, converge, error
     std::string what;                     // a sentence's rest
 };
 

@@ -140,7 +140,7 @@ render::Transport smallTransport() {
 
 std::vector<Case> allCases(int random) {
     std::vector<Case> cases;
-    for (const auto& group : {glassCases, lightCases, casterCases, receiverCases, optionCases, builtinCases}) {
+    for (const auto& group : {glassCases, lightCases, casterCases, tracedCases, mirrorCases, receiverCases, optionCases, builtinCases}) {
         for (Case& one : group()) cases.push_back(std::move(one));
     }
     for (int seed = 1; seed <= random; ++seed) cases.push_back(randomCase(static_cast<std::uint64_t>(seed)));

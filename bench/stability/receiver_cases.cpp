@@ -31,7 +31,7 @@ std::string nothingStarts(const render::EnergyLedger& ledger) { return ledger.on
 Setup scaledSphere(float by) {
     Setup setup = plain(scaled(sphereScene(optics::Cauchy{1.5046, 0.0042}), by));
     // What it is at 1 m, whatever the size; rounding differs, and with it what happens at the rim.
-    setup.expect = [](const render::EnergyLedger& ledger) {
+    setup.expectRefined = [](const render::EnergyLedger& ledger) {
         const double share = ledger.deposited / ledger.onCasters;
         return std::abs(share - 0.8217) < 1e-3 ? "" : "the share that lands depends on the scale: " + std::to_string(share);
     };

@@ -137,7 +137,7 @@ nlohmann::json ledgerShares(const render::EnergyLedger& l) {
     const double all = l.onCasters > 0.0 ? l.onCasters : 1.0;
     return {{"deposited", l.deposited / all}, {"absorbed", l.absorbed / all}, {"reflected", l.reflected / all},
             {"total_reflection", l.totalReflection / all}, {"rejected", l.rejected / all}, {"left_map", l.leftMap / all},
-            {"no_receiver", l.noReceiver / all}};
+            {"no_receiver", l.noReceiver / all}, {"cut", l.cut / all}};
 }
 
 }  // namespace

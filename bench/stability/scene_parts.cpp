@@ -123,7 +123,7 @@ bool allFinite(const std::vector<float>& values) {
 }
 
 double ledgerGap(const render::EnergyLedger& l) {
-    const double gone = l.deposited + l.absorbed + l.reflected + l.totalReflection + l.rejected + l.leftMap + l.noReceiver;
+    const double gone = l.deposited + l.absorbed + l.reflected + l.totalReflection + l.rejected + l.leftMap + l.noReceiver + l.cut;
     return l.onCasters > 0.0 ? std::abs(l.onCasters - gone) / l.onCasters : gone;
 }
 
