@@ -9,6 +9,7 @@ void addErrorVsTime(CLI::App& app);   // error and time of many configurations
 void addEstimate(CLI::App& app);      // the error estimate beside the true error
 void addFrame(CLI::App& app);         // render times in this process
 void addOmissions(CLI::App& app);     // what leaving out saves
+void addPeers(CLI::App& app);        // POV-Ray beside traced transport
 void addReference(CLI::App& app);     // exact maps from the CPU
 void addStability(CLI::App& app);     // stiff, extreme and random scenes
 void addStream(CLI::App& app);        // what the socket adds

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     addEstimate(app);
     addFrame(app);
     addOmissions(app);
+    addPeers(app);
     addReference(app);
     addStability(app);
     addStream(app);
