@@ -31,7 +31,7 @@ struct ReferenceOptions {
     std::string scene = "sphere", out, cache, observer = "cie";
     std::vector<double> window;
     int cells = 256, mapSize = 0;
-    bool thinWallsAbsent = false;
+    bool thinWallsAbsent = false, mirrorsReceive = false;
     Settings settings{.wavelengthsNm = {380, 430, 480, 530, 580, 630, 680}, .photons = 1u << 23};
 };
 
@@ -60,7 +60,8 @@ Subject subjectOf(const ReferenceOptions& options) {
     scene::Scene scene = loadScene(options.scene);
     const auto key = static_cast<std::size_t>(render::keyLight(scene));
     const auto walls = options.thinWallsAbsent ? tracer::ThinWalls::Absent : tracer::ThinWalls::Receivers;
-    return {tracer::worldOf(scene, scene.lights[key], walls), std::move(scene), path.stem().string()};
+    const auto mirrors = options.mirrorsReceive ? tracer::Mirrors::Receivers : tracer::Mirrors::Casters;
+    return {tracer::worldOf(scene, scene.lights[key], walls, mirrors), std::move(scene), path.stem().string()};
 }
 
 // The window that a JSON of tests/reference names.
@@ -93,7 +94,8 @@ json describe(const tracer::Image& image, const std::string& file) {
 
 json describe(const tracer::Ledger& ledger) {
     return {{"on_casters", ledger.onCasters},         {"landed", ledger.landed},
-            {"absorbed", ledger.absorbed},            {"first_reflected", ledger.firstReflected},
+            {"absorbed", ledger.absorbed},            {"mirrors", ledger.mirrors},
+            {"first_reflected", ledger.firstReflected},
             {"below_threshold", ledger.belowThreshold}, {"interface_limit", ledger.interfaceLimit},
             {"escaped", ledger.escaped}};
 }
@@ -214,10 +216,11 @@ void addReference(CLI::App& app) {
         ->check(CLI::Range(0, 4096))->capture_default_str();
     command->add_option("--observer", options->observer, "the CIE's table or the fit of Wyman 2013")
         ->check(CLI::IsMember({"cie", "wyman"}))->capture_default_str();
-    command->add_option("--interfaces", settings.maxInterfaces, "of one path")->check(CLI::Range(1, 32))->capture_default_str();
+    command->add_option("--interfaces", settings.maxInterfaces, "of one path")->check(CLI::Range(1, 256))->capture_default_str();
     command->add_option("--min-weight", settings.minWeight, "branches below it end")->check(CLI::Range(0.0, 0.5))->capture_default_str();
-    command->add_flag("--first-reflection", settings.firstReflection, "also what the first surface throws back");
+    command->add_flag("--first-reflection", settings.firstReflection, "also what glass throws back that the light meets first");
     command->add_flag("--thin-walls-absent", options->thinWallsAbsent, "light passes thin walls; without it they are receivers");
+    command->add_flag("--mirrors-receive", options->mirrorsReceive, "smooth metal only stops light, as in refined mode; without it, it throws light");
     command->add_option("--window", options->window, "corner and two edges: x,y,z,ux,uy,uz,vx,vy,vz in m")->delimiter(',')->expected(9);
     command->add_option("--cells", options->cells, "of the window, a side")->check(CLI::Range(1, 8192))->capture_default_str();
     command->add_option("--map", options->mapSize, "texels a side of the renderer's spectral map; 0: none")->check(CLI::Range(0, 4096));

@@ -19,7 +19,7 @@ namespace caustream::tracer {
 namespace {
 
 // Part of every key. To be raised when the tracer gives other results for the same input.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 using Digest = std::array<unsigned char, 32>;
 
@@ -109,7 +109,7 @@ void describe(Writer& key, const World& world) {
     for (const Glass& glass : world.glasses) {
         key << glass.dispersion.index();
         std::visit([&](const auto& dispersion) { key << dispersion; }, glass.dispersion);
-        key << glass.absorption.nm << glass.absorption.perM;
+        key << glass.absorption.nm << glass.absorption.perM << glass.priority << glass.mirror;
     }
     key << world.bodies.size();
     for (const Body& body : world.bodies) key << body.positions << body.normals << body.indices << body.glass;

@@ -9,9 +9,10 @@
 
 namespace caustream::tracer {
 
-// Index and absorption (1/m) of every glass, at one wavelength.
+// A glass at one wavelength.
 struct GlassAt {
-    double index = 1.0, perM = 0.0;
+    double index = 1.0, perM = 0.0;   // absorption in 1/m
+    double reflectance = 0.0;         // of a mirror, at normal incidence
 };
 
 class PathTracer {
@@ -39,6 +40,7 @@ class PathTracer {
         Ledger ledger;
     };
     void run(Branch branch, Hit hit, bool hasHit, Photon& photon);
+    void reflect(const Branch& branch, const Hit& hit, Photon& photon);
     void cross(const Branch& branch, const Hit& hit, Photon& photon);
     void push(const Branch& branch, Photon& photon);
     const GlassAt& at(const Inside& inside, const Photon& photon) const;
@@ -49,6 +51,7 @@ class PathTracer {
     Collector& collector_;
     GlassAt outside_;
     std::vector<int> glassOf_;       // of each object, bodies first
+    std::vector<int> rankOf_;        // of each object, by priority: where several are, the lowest is what is there
     std::vector<Branch> waiting_;    // kept, so that no photon allocates
     double worstClosure_ = 0.0;
 };

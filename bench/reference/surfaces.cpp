@@ -186,7 +186,7 @@ Hit Surfaces::nearest(const glm::dvec3& origin, const glm::dvec3& direction, con
         rtcIntersect1(embree_->all.get(), &context, &ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return best;
         const Hit hit = refine(static_cast<int>(ray.hit.geomID), ray.hit.primID, origin, direction);
-        const bool contradicts = hit.glass >= 0 && hit.entering == inside.holds(hit.object);
+        const bool contradicts = hit.glass >= 0 && !mirror(hit.glass) && hit.entering == inside.holds(hit.object);
         if (hit.object >= 0 && !contradicts) return hit.distance < best.distance ? hit : best;
         from = static_cast<double>(ray.ray.tfar) + kSinglePrecision * (size(origin) + static_cast<double>(ray.ray.tfar));
     }
@@ -208,7 +208,7 @@ Inside Surfaces::around(const glm::dvec3& point) const {
                                          glm::normalize(glm::dvec3(-0.3077, 0.4336, -0.8622)),
                                          glm::normalize(glm::dvec3(0.7254, -0.6631, 0.3147))};
     for (std::size_t body = 0; body < world_.bodies.size(); ++body) {
-        if (world_.bodies[body].glass < 0) continue;
+        if (world_.bodies[body].glass < 0 || mirror(world_.bodies[body].glass)) continue;
         int votes = 0;
         for (const glm::dvec3& way : ways) {
             int crossings = 0;
@@ -228,9 +228,9 @@ Inside Surfaces::around(const glm::dvec3& point) const {
         if (votes >= 2) inside.enter(static_cast<int>(body));
     }
     for (std::size_t i = 0; i < world_.solids.size(); ++i) {
-        bool holds = true;
+        bool holds = !mirror(world_.solids[i].glass);
         if (const auto* sphere = std::get_if<Sphere>(&world_.solids[i].shape)) {
-            holds = glm::length(point - sphere->centre) < sphere->radius;
+            holds = holds && glm::length(point - sphere->centre) < sphere->radius;
         } else {
             for (const glm::dvec4& plane : std::get<ConvexPlanes>(world_.solids[i].shape).planes) {
                 holds = holds && glm::dot(glm::dvec3(plane), point) < plane.w;

@@ -6,19 +6,20 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 
 #include "bench/reference/world.h"
 
 namespace caustream::tracer {
 
-// The bodies and solids a path is inside of, innermost last. Objects count bodies first, then solids.
+// The bodies and solids a path is inside of, the last entered last. Objects count bodies first, then solids.
 class Inside {
  public:
-    static constexpr int kMost = 8;
+    static constexpr int kMost = 16;   // as many casters as a loaded scene may have
     bool empty() const { return count_ == 0; }
-    int innermost() const { return objects_[static_cast<std::size_t>(count_ - 1)]; }
+    std::span<const std::int32_t> objects() const { return {objects_.data(), static_cast<std::size_t>(count_)}; }
     bool holds(int object) const;
-    void enter(int object);  // beyond kMost nested bodies the outermost is forgotten
+    void enter(int object);  // beyond kMost the first entered is forgotten
     void leave(int object);
 
  private:
@@ -42,7 +43,7 @@ class Surfaces {
     ~Surfaces();
 
     // The first surface along a ray that began on solid `onSolid` (-1: on none). Faces that contradict `inside` (the
-    // front of what it is in already, the back of what it is not in) are passed: open or overlapping meshes, rounding.
+    // front of what it is in already, the back of what it is not in) are passed: open meshes, rounding. Mirrors have no inside.
     Hit nearest(const glm::dvec3& origin, const glm::dvec3& direction, const Inside& inside, int onSolid) const;
 
     // A receiver strictly between two points; the last 1e-4 of the way does not count.
@@ -56,6 +57,7 @@ class Surfaces {
 
  private:
     struct Embree;
+    bool mirror(int glass) const { return glass >= 0 && world_.glasses[static_cast<std::size_t>(glass)].mirror; }
     bool solidHit(std::size_t solid, const glm::dvec3& origin, const glm::dvec3& direction, bool within, Hit& hit) const;
     Hit refine(int body, std::uint32_t triangle, const glm::dvec3& origin, const glm::dvec3& direction) const;
 

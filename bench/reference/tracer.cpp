@@ -51,7 +51,7 @@ void check(const Settings& settings) {
         if (!holds) throw std::invalid_argument(what);
     };
     require(settings.photons >= kHalves, "a trace needs two photons at least");
-    require(settings.maxInterfaces >= 1 && settings.maxInterfaces <= 32, "1 to 32 interfaces");
+    require(settings.maxInterfaces >= 1 && settings.maxInterfaces <= 256, "1 to 256 interfaces");
     require(settings.threads == 1 || settings.threads == 2, "1 or 2 threads");
     require(settings.continuousSamples >= 0 && settings.continuousSamples <= 4096, "0 to 4096 wavelengths a photon");
     require(settings.minWeight >= 0.0 && settings.minWeight < 1.0, "a least weight of 0 to 1");
@@ -81,9 +81,14 @@ struct Half {
     double worstClosure = 0.0;
 };
 
+GlassAt glassAt(const Glass& glass, double nm) {
+    const double perM = absorptionAt(glass.absorption, nm);
+    return glass.mirror ? GlassAt{.reflectance = std::exp(-perM)} : GlassAt{indexAt(glass.dispersion, nm), perM};
+}
+
 std::vector<GlassAt> glassesAt(const World& world, double nm) {
     std::vector<GlassAt> glasses;
-    for (const Glass& glass : world.glasses) glasses.push_back({indexAt(glass.dispersion, nm), absorptionAt(glass.absorption, nm)});
+    for (const Glass& glass : world.glasses) glasses.push_back(glassAt(glass, nm));
     return glasses;
 }
 
@@ -121,8 +126,7 @@ void traceHalf(Shared& shared, int which, Half& half, const Progress& progress) 
         for (std::size_t k = 0; k < shared.spectrum.count(); ++k) {
             const WavelengthSample sample = shared.spectrum.at(k, place);
             for (std::size_t g = 0; g < sampled.size(); ++g) {
-                const Glass& glass = shared.world.glasses[g];
-                sampled[g] = {indexAt(glass.dispersion, sample.nm), absorptionAt(glass.absorption, sample.nm)};
+                sampled[g] = glassAt(shared.world.glasses[g], sample.nm);
             }
             path.follow(ray, first, shared.start, sampled, {-1, sample.xyz, sample.share}, flux, half.continuous);
         }
@@ -133,7 +137,8 @@ void traceHalf(Shared& shared, int which, Half& half, const Progress& progress) 
 Ledger mean(const Ledger& a, const Ledger& b, double share) {
     const double s = 0.5 * share;
     return {s * (a.onCasters + b.onCasters),           s * (a.landed + b.landed),
-            s * (a.absorbed + b.absorbed),             s * (a.firstReflected + b.firstReflected),
+            s * (a.absorbed + b.absorbed),             s * (a.mirrors + b.mirrors),
+            s * (a.firstReflected + b.firstReflected),
             s * (a.belowThreshold + b.belowThreshold), s * (a.interfaceLimit + b.interfaceLimit),
             s * (a.escaped + b.escaped)};
 }

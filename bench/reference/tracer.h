@@ -37,9 +37,9 @@ struct Settings {
     int continuousSamples = 0;           // wavelengths a photon, one in each equal part of 380-680 nm; 0: no XYZ
     Observer observer = Observer::Cie1931;
     std::uint64_t photons = 1u << 20;    // directions in all, half of them in each of two independent halves
-    int maxInterfaces = 32;              // of one path, 1..32; what would meet another is booked as interfaceLimit
+    int maxInterfaces = 32;              // of one path, 1..256; what would meet another is booked as interfaceLimit
     double minWeight = 1e-4;             // of a photon's own: a weaker branch is booked as belowThreshold
-    bool firstReflection = false;        // follow what the first surface throws back, too
+    bool firstReflection = false;        // follow what glass throws back that the light meets first, too
     int threads = 2;                     // 1 or 2; the result is the same bits
     std::vector<Window> windows;
     std::vector<MapView> maps;
@@ -65,9 +65,9 @@ struct Collected {
 };
 
 // Flux in units of the light's flux per steradian on its axis (sr; m^2 for a directional light).
-struct Ledger {
+struct Ledger {                              // mirrors: what metal took
     double onCasters = 0;                    // all of the following
-    double landed = 0, absorbed = 0, firstReflected = 0, belowThreshold = 0, interfaceLimit = 0, escaped = 0;
+    double landed = 0, absorbed = 0, mirrors = 0, firstReflected = 0, belowThreshold = 0, interfaceLimit = 0, escaped = 0;
 };
 
 struct Result {

@@ -45,14 +45,21 @@ Cookie cookieOf(const scene::Texture& texture) {
 
 }  // namespace
 
-World worldOf(const scene::Scene& scene, const scene::Light& light, ThinWalls thinWalls) {
+World worldOf(const scene::Scene& scene, const scene::Light& light, ThinWalls thinWalls, Mirrors mirrors) {
     World world;
-    for (const scene::Material& material : scene.materials) world.glasses.push_back({material.dispersion, material.absorption});
+    for (const scene::Material& material : scene.materials) {
+        if (material.mirror) {
+            world.glasses.push_back({.absorption = optics::absorptionFromRgb(glm::dvec3(material.baseColor), 1.0), .mirror = true});
+        } else {
+            world.glasses.push_back({material.dispersion, material.absorption, material.priority});
+        }
+    }
     for (const scene::Object& object : scene.geometry->objects) {
         const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
         if (material.caster && material.thinWalled && thinWalls == ThinWalls::Absent) continue;
         Body body = bodyOf(*scene.geometry, object);
-        if (material.caster && !material.thinWalled) body.glass = object.material;
+        const bool throws = material.mirror && mirrors == Mirrors::Casters;
+        if (throws || (material.caster && !material.thinWalled)) body.glass = object.material;
         world.bodies.push_back(std::move(body));
     }
     world.light.type = light.type;

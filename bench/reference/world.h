@@ -18,6 +18,8 @@ namespace caustream::tracer {
 struct Glass {
     optics::Dispersion dispersion;
     optics::Absorption absorption;
+    int priority = 0;       // where bodies overlap the highest is what is there; of equal ones the first, solids last
+    bool mirror = false;    // opaque metal that reflects, from both sides; its reflectance is what `absorption` leaves over 1 m
 };
 
 struct Body {  // triangles, counter-clockwise seen from outside
@@ -65,8 +67,12 @@ struct World {
 // unchanged, as it passes them in the renderer's light passes.
 enum class ThinWalls { Receivers, Absent };
 
+// Smooth metal throws light, as it does, or only stops it, as it does in the renderer's refined and thesis modes.
+enum class Mirrors { Casters, Receivers };
+
 // A loaded scene under one of its lights.
-World worldOf(const scene::Scene& scene, const scene::Light& light, ThinWalls thinWalls = ThinWalls::Receivers);
+World worldOf(const scene::Scene& scene, const scene::Light& light, ThinWalls thinWalls = ThinWalls::Receivers,
+              Mirrors mirrors = Mirrors::Casters);
 
 // A scene of tests/reference/*.json ("prism.json"): the exact solid, a floor of 2 km, the light. Throws
 // std::runtime_error that names the file.

@@ -176,6 +176,11 @@ TEST(TracerTheory, EveryPhotonsEnergyIsAccountedFor) {
             if (i == 3) mesh.indices.resize(mesh.indices.size() * 3 / 4);   // open
             world.bodies.push_back(bodyOf(mesh, i));
         }
+        if (seed % 2 == 0) {   // not all as entered: a mirror beside them, and what overlaps by priority
+            for (int i = 0; i < 4; ++i) world.glasses[static_cast<std::size_t>(i)].priority = static_cast<int>(random() % 3) - 1;
+            world.glasses.push_back({.absorption = {{380.0, 680.0}, {0.1, 1.0}}, .mirror = true});
+            world.bodies.push_back(bodyOf(scenes::icosphere(2, {1.5, 0.3 + unit(random), 0.0}, 0.4), 4));
+        }
         world.solids = {{Sphere{place(0.5), 0.4}, 0}, {ConvexPlanes{{{1, 0, 0, 1.5}, {-1, 0, 0, -1.1}, {0, 1, 0, 1.5}, {0, -1, 0, -0.2}, {0, 0, 1, 0.4}, {0, 0, -1, 0.4}}}, 1}};
         world.light = spot(place(seed % 3 == 0 ? 0.8 : 2.5), {0.1, -1, 0.1}, radians(5.0 + 60.0 * unit(random)));
         world.light.innerConeRad *= unit(random);
@@ -187,7 +192,7 @@ TEST(TracerTheory, EveryPhotonsEnergyIsAccountedFor) {
         EXPECT_LE(result.worstClosure, 1e-12) << seed;
         for (const Ledger& ledger : {result.ledgers[0], result.ledgers[1], result.continuous}) {
             EXPECT_GT(ledger.landed, 0.0) << seed;
-            EXPECT_NEAR(ledger.landed + ledger.absorbed + ledger.firstReflected + ledger.belowThreshold + ledger.interfaceLimit + ledger.escaped,
+            EXPECT_NEAR(ledger.landed + ledger.absorbed + ledger.mirrors + ledger.firstReflected + ledger.belowThreshold + ledger.interfaceLimit + ledger.escaped,
                         ledger.onCasters, 1e-12 * ledger.onCasters) << seed;
         }
     }
