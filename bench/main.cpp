@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
     using namespace caustream::bench;
     CLI::App app{"caustream-bench: prints what frames cost. Quote ratios of one run, not milliseconds of different machines."};
     app.require_subcommand(1);
+    addConverge(app);
     addErrorVsTime(app);
     addEstimate(app);
     addFrame(app);

@@ -1,11 +1,20 @@
 #include "bench/accuracy/configuration.h"
 
+#include <algorithm>
 #include <charconv>
 #include <sstream>
 
 namespace caustream::bench {
 
 namespace {
+
+struct ModeName {
+    render::Mode mode;
+    std::string name;
+};
+const ModeName kModeNames[] = {{render::Mode::Refined, "refined"}, {render::Mode::Thesis, "thesis"}, {render::Mode::Traced, "traced"}, {render::Mode::Auto, "auto"}};
+
+std::string modeName(render::Mode mode) { return std::ranges::find(kModeNames, mode, &ModeName::mode)->name; }
 
 std::string wavelengthsName(int wavelengths) {
     return wavelengths == render::kContinuous ? "continuous" : std::to_string(wavelengths);
@@ -26,10 +35,13 @@ bool parseSwitch(const std::string& text, bool& value) {
 }
 
 bool set(render::Transport& t, const std::string& key, const std::string& value) {
-    if (key == "mode" && (value == "refined" || value == "thesis")) {
-        t.mode = value == "thesis" ? render::Mode::Thesis : render::Mode::Refined;
+    if (key == "mode") {
+        const auto known = std::ranges::find(kModeNames, value, &ModeName::name);
+        if (known == std::end(kModeNames)) return false;
+        t.mode = known->mode;
         return true;
     }
+    if (key == "bounces") return parseInt(value, 0, 32, t.bounces);
     if (key == "wavelengths" && value == "continuous") {
         t.wavelengths = render::kContinuous;
         return true;
@@ -58,11 +70,12 @@ Configuration make(render::Mode mode, int wavelengths, int grid, int map, bool g
 
 std::string Configuration::name() const {
     const render::Transport& t = transport;
-    const bool thesis = t.mode == render::Mode::Thesis;
-    std::string name = (thesis ? "thesis " : "refined ") + wavelengthsName(t.wavelengths) + " grid " + std::to_string(t.photonGrid) +
+    const bool thesis = t.mode == render::Mode::Thesis, refined = t.mode == render::Mode::Refined;
+    std::string name = modeName(t.mode) + " " + wavelengthsName(t.wavelengths) + " grid " + std::to_string(t.photonGrid) +
                        " map " + std::to_string(t.mapSize);
     if (thesis && t.hierarchyLevels != 3) name += " levels " + std::to_string(t.hierarchyLevels);
-    if (!thesis && t.backSteps != 4) name += " steps " + std::to_string(t.backSteps);
+    if (!thesis && !refined && t.bounces != 8) name += " bounces " + std::to_string(t.bounces);
+    if (refined && t.backSteps != 4) name += " steps " + std::to_string(t.backSteps);
     if (t.gapFill) name += " gap fill";
     if (!t.filter) name += " no filter";
     return name;
@@ -77,7 +90,7 @@ std::string Configuration::label() const {
 
 std::string Configuration::family() const {
     if (transport.mode == render::Mode::Thesis) return transport.gapFill ? "thesis with gap fill" : "thesis";
-    return transport.wavelengths == render::kContinuous ? "refined, continuous spectrum" : "refined, exact wavelengths";
+    return modeName(transport.mode) + (transport.wavelengths == render::kContinuous ? ", continuous spectrum" : ", exact wavelengths");
 }
 
 tl::expected<Configuration, std::string> parseConfiguration(const std::string& text) {
@@ -93,8 +106,8 @@ tl::expected<Configuration, std::string> parseConfiguration(const std::string& t
 }
 
 std::string configurationHelp() {
-    return "mode=refined|thesis, wavelengths=1..64|continuous, grid=16..4096 (photons a side; thesis: texels a side of the "
-           "light's view), map=64..2048, steps=1..16 (on the back layer), levels=1..6 (thesis: hierarchy), gap_fill=on|off, "
+    return "mode=refined|thesis|traced|auto, wavelengths=1..64|continuous, grid=16..4096 (photons a side; thesis: texels a side of the "
+           "light's view), map=64..2048, steps=1..16 (on the back layer), levels=1..6 (thesis: hierarchy), bounces=0..32 (traced), gap_fill=on|off, "
            "filter=on|off";
 }
 

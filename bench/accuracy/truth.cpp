@@ -21,14 +21,6 @@ Configuration canonical() {
     return configuration;
 }
 
-// A traced image in the window's values: planes are irradiance as they are, views are weighed as resample() does.
-tracer::Image weighed(tracer::Image image, const Window& window) {
-    if (window.ofPlane()) return image;
-    const std::size_t area = window.weights().size();
-    for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] *= static_cast<float>(window.weights()[i % area]);
-    return image;
-}
-
 void addWindow(tracer::Settings& settings, const Window& window) {
     if (window.ofPlane()) {
         settings.windows = {{window.origin(), window.edgeU(), window.edgeV(), window.cells(), window.cells(), 1e-4}};
@@ -50,6 +42,22 @@ std::vector<float> mapOf(tracer::Image image, const optics::Spectrum& light) {
 
 double Truth::bandsNoise() const {
     return std::accumulate(bands.relativeL1.begin(), bands.relativeL1.end(), 0.0) / static_cast<double>(bands.relativeL1.size());
+}
+
+tracer::Image weighed(tracer::Image image, const Window& window) {
+    if (window.ofPlane()) return image;
+    const std::size_t area = window.weights().size();
+    for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] *= static_cast<float>(window.weights()[i % area]);
+    return image;
+}
+
+tracer::Result traceSpectrum(const Subject& subject, const Window& window, std::uint64_t photons, const std::string& cacheFolder,
+                             const std::function<void(double)>& progress) {
+    tracer::Settings spectrum;
+    spectrum.continuousSamples = kContinuousSamples;
+    spectrum.photons = photons;
+    addWindow(spectrum, window);
+    return tracer::traceCached(cacheFolder, subject.world, spectrum, progress);
 }
 
 Truth makeTruth(Renderer& renderer, const Subject& subject, const TruthSettings& settings, const std::function<void(double)>& progress) {

@@ -34,6 +34,12 @@ struct Truth {
     double bandsNoise() const;
 };
 
+// The continuous spectrum where `window` lies, from the tracer or its cache: windows[0] of a plane, maps[0] of a view.
+tracer::Result traceSpectrum(const Subject& subject, const Window& window, std::uint64_t photons, const std::string& cacheFolder,
+                             const std::function<void(double)>& progress);
+// A traced image in the window's values: planes are irradiance as they are, views are weighed as resample() does.
+tracer::Image weighed(tracer::Image image, const Window& window);
+
 Truth makeTruth(Renderer& renderer, const Subject& subject, const TruthSettings& settings, const std::function<void(double)>& progress);
 
 struct MapError {

@@ -1,0 +1,74 @@
+#include "bench/converge/scene_report.h"
+
+#include <cstdio>
+
+#include "bench/accuracy/tables.h"
+#include "bench/accuracy/truth.h"
+#include "bench/progress.h"
+
+namespace caustream::bench {
+
+namespace {
+
+constexpr int kTexelsOfCell = 4;
+
+// Sums of k x k cells.
+std::vector<float> joined(const std::vector<float>& cells, int side, int k) {
+    const int few = side / k;
+    std::vector<float> sums(static_cast<std::size_t>(few * few));
+    for (int j = 0; j < few * k; ++j) {
+        for (int i = 0; i < few * k; ++i) sums[static_cast<std::size_t>(j / k * few + i / k)] += cells[static_cast<std::size_t>(j * side + i)];
+    }
+    return sums;
+}
+
+}  // namespace
+
+SceneReport reportScene(Renderer& renderer, const std::string& scene, const ReportSettings& settings) {
+    const Subject subject = loadSubject(scene);
+    Configuration configuration;
+    configuration.transport.mode = render::Mode::Traced;
+    configuration.transport.mapSize = settings.map;
+    configuration.transport.bounces = settings.bounces;
+    std::fprintf(stderr, "%s: at rest\n", scene.c_str());
+    const AtRest rest = comeToRest(renderer, subject, configuration, {.pictureSize = settings.pictureSize, .cells = settings.cells});
+    const RestPoint& end = rest.points.back();
+    SceneReport report{.scene = scene, .where = rest.window.ofPlane() ? "the floor" : "the light's view"};
+    report.frames = end.frames, report.photons = end.photons, report.converged = rest.converged;
+    report.secondsToEnd = end.spent.seconds, report.estimateAtEnd = end.estimate;
+    report.framesPerSecond = end.frames / end.spent.seconds;
+    report.ledgerGap = rest.worstLedgerGap;
+    report.cut = rest.ledger.onCasters > 0.0 ? rest.ledger.cut / rest.ledger.onCasters : 0.0;
+
+    // The same transport with more photons
+    std::fprintf(stderr, "%s: its own reference\n", scene.c_str());
+    Configuration longer = configuration;
+    longer.transport.targetError = 1e-4;
+    renderer.forget();
+    const AtRest reference = comeToRest(renderer, subject, longer, {.cells = settings.cells, .pictures = false,
+                                        .mostPhotons = static_cast<std::uint64_t>(settings.referencePhotons * static_cast<double>(end.photons))});
+    const float* own = reference.points.back().luminance.data();
+    report.errorAtEnd = relativeL1(end.luminance, own);
+    for (auto point = rest.points.rbegin(); point != rest.points.rend(); ++point) {
+        const double error = relativeL1(point->luminance, own);
+        if (error > settings.good) break;
+        report.secondsToGood = point->spent.seconds, report.errorThere = error;
+    }
+
+    // The reference tracer
+    Progress progress("reference of " + scene);
+    const tracer::Result traced = traceSpectrum(subject, rest.window, settings.tracerPhotons, settings.cacheFolder, [&](double share) { progress.at(share); });
+    const tracer::Image image = weighed(rest.window.ofPlane() ? traced.windows.front().xyz : traced.maps.front().xyz, rest.window);
+    const std::size_t area = rest.window.weights().size();
+    const std::vector<float> truth(image.values.begin() + static_cast<std::ptrdiff_t>(area), image.values.begin() + static_cast<std::ptrdiff_t>(2 * area));
+    // Cells of enough texels: of a plane they are about as wide as its own.
+    const int k = std::max(1, kTexelsOfCell * settings.cells / settings.map), side = settings.cells / k;
+    const std::vector<float> coarse = joined(end.luminance, settings.cells, k), known = joined(truth, settings.cells, k);
+    const tracer::Difference d = tracer::difference(coarse.data(), known.data(), side, side);
+    report.truth = d.relativeL1, report.flux = d.fluxRatio;
+    report.truthNoise = image.relativeL1[1] / k;   // of independent cells
+    renderer.forget();
+    return report;
+}
+
+}  // namespace caustream::bench
