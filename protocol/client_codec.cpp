@@ -67,6 +67,7 @@ ClientMessage decodeStreamResume(Fields& in) {
 ClientMessage decodeFrameRequest(Fields& in) {
     FrameRequest request{requestId(in)};
     if (const auto v = in.find("still")) request.still = v->boolean();
+    if (const auto v = in.find("converge")) request.converge = v->boolean();
     return request;
 }
 
@@ -160,7 +161,7 @@ std::string encode(const StreamResume& resume) {
     return text({{"op", "stream.resume"}, {"id", resume.id}});
 }
 std::string encode(const FrameRequest& request) {
-    return text({{"op", "frame.request"}, {"id", request.id}, {"still", request.still}});
+    return text({{"op", "frame.request"}, {"id", request.id}, {"still", request.still}, {"converge", request.converge}});
 }
 std::string encode(const Ack& ack) {
     return text({{"op", "ack"},

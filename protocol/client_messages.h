@@ -65,7 +65,8 @@ struct StreamResume {
 
 struct FrameRequest {  // one frame of the present state, drawn whatever the stream does
     std::uint32_t id = 0;
-    bool still = false;  // anti-aliased
+    bool still = false;     // anti-aliased
+    bool converge = false;  // as a frame at rest: traced, with photons added to those that there are
     bool operator==(const FrameRequest&) const = default;
 };
 

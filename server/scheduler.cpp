@@ -19,7 +19,7 @@ std::uint64_t frameUs(const Shown& shown) { return static_cast<std::uint64_t>(1e
 }  // namespace
 
 bool FrameJob::endsConvergence(const std::optional<render::Convergence>& reached) const {
-    return converge && reached && reached->converged && (still || !wantsStill(shown));
+    return resting() && converge && reached && reached->converged && (still || !wantsStill(shown));
 }
 
 // What was drawn before is no more.
@@ -58,12 +58,12 @@ void Scheduler::setOccupied(SessionKey session, std::uint32_t frames, std::uint3
     entry.quietSinceUs = nowUs;
 }
 
-bool Scheduler::request(SessionKey session, std::uint32_t requestId, bool still) {
+bool Scheduler::request(SessionKey session, std::uint32_t requestId, bool still, bool converge) {
     Entry& entry = entries_.at(session);
     if (entry.requests.size() >= kMaxRequests) {
         return false;
     }
-    entry.requests.push_back({entry.shown, requestId, still});
+    entry.requests.push_back({entry.shown, requestId, still, converge});
     return true;
 }
 
@@ -137,6 +137,7 @@ std::optional<FrameJob> Scheduler::takeMoving(SessionKey session, Entry& entry, 
         return FrameJob{.session = session,
                         .shown = std::move(request.shown),
                         .still = request.still,
+                        .converge = request.converge,
                         .requestId = request.id,
                         .order = ++order_,
                         .startedUs = nowUs};

@@ -57,7 +57,7 @@ class Scheduler {
     void setOccupied(SessionKey session, std::uint32_t frames, std::uint32_t window, std::uint64_t nowUs);
 
     // False when too many wait already.
-    bool request(SessionKey session, std::uint32_t requestId, bool still);
+    bool request(SessionKey session, std::uint32_t requestId, bool still, bool converge = false);
 
     // The frame of `job` was drawn, its map being so far; nothing: it has no more to gain, or could not be drawn.
     void drawn(const FrameJob& job, const std::optional<render::Convergence>& reached);
@@ -79,7 +79,7 @@ class Scheduler {
     struct Request {
         Shown shown;
         std::uint32_t id = 0;
-        bool still = false;
+        bool still = false, converge = false;
     };
     // Of what was drawn last. Reached: its last frame is still to come.
     enum class Convergence { None, UnderWay, Reached, Shown };

@@ -201,7 +201,7 @@ void Viewer::setStreaming(std::uint32_t id, bool streaming) {
 
 void Viewer::on(const protocol::FrameRequest& request) {
     const bool taken = requestsPending_ + outbox_.answersWaiting() < Scheduler::kMaxRequests && desk_.renderer->schedule([&](Scheduler& scheduler) {
-        return scheduler.request(connection_.id(), request.id, request.still);
+        return scheduler.request(connection_.id(), request.id, request.still, request.converge);
     });
     if (!taken) {
         refuse(problem(ErrorCode::Busy, std::to_string(Scheduler::kMaxRequests) + " frames are asked for already", {}, request.id));

@@ -83,10 +83,10 @@ void Connection::pauseStream() {
     if (impl_->ready) impl_->socket->sendText(protocol::encode(protocol::StreamPause{.id = ++impl_->lastId}));
 }
 
-std::uint32_t Connection::requestFrame(bool still) {
+std::uint32_t Connection::requestFrame(bool still, bool converge) {
     std::scoped_lock lock(impl_->mutex);
     if (!impl_->ready) return 0;
-    impl_->socket->sendText(protocol::encode(protocol::FrameRequest{.id = ++impl_->lastId, .still = still}));
+    impl_->socket->sendText(protocol::encode(protocol::FrameRequest{.id = ++impl_->lastId, .still = still, .converge = converge}));
     return impl_->lastId;
 }
 

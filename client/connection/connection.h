@@ -49,8 +49,9 @@ class Connection {
 
     void startStream(bool stats);
     void pauseStream();
-    // Asks for one frame; it comes through takeRequested(). 0 while there is no connection.
-    std::uint32_t requestFrame(bool still);
+    // Asks for one frame, with `converge` as it is drawn while nothing moves; it comes through takeRequested(). 0 while
+    // there is no connection.
+    std::uint32_t requestFrame(bool still, bool converge = false);
     // The frame is on the screen (or wherever it was to go): the server may send another.
     void acknowledge(const Frame& frame, std::uint32_t paintUs);
 

@@ -14,6 +14,7 @@ constexpr const char* kExamples = R"(Examples:
   caustream-shot --url http://127.0.0.1:9720 --scene sphere --set 'lights.key.position=[1,2,0.5]' \
                  --set 'camera.exposure=["ev",9]' --out moved.png
   caustream-shot --url http://127.0.0.1:9720 --scene gem --moving --frames 60 --out last.jpg
+  caustream-shot --url http://127.0.0.1:9720 --scene gem --converge --set transport.target_error=0.005 --out exact.png
 
 The ending of FILE chooses the format: .png (8 bits, fetched lossless), .npy (float32, linear: the spectral map or the
 picture before exposure's curve), .jpg. A # in FILE becomes the frame's number; without it the last frame is kept.
@@ -24,6 +25,13 @@ FILE.json tells the rest: stream.info, the frame's header, statistics, the map's
   lights.NAME.intensity=["cd",100]  camera.eye=[x,y,z]  camera.target=[x,y,z]  camera.fov_y_deg=40
   materials.NAME.dispersion=["cauchy",1.458,0.00354]  transport.map_size=1024  transport.photon_grid=512
   transport.wavelengths="continuous" (the default) or 1 to 64 exact ones  transport.gap_fill=true
+  transport.mode="auto" (the default), "traced", "refined" or "thesis"  transport.bounces=8 (0 to 32, for what is traced)
+  transport.exact_receivers=true  transport.target_error=0.01
+
+One still is one frame: quick, and of a traced scene as good as one frame's photons. --converge waits until the server has
+traced enough of them, that is until the map's estimated error is under transport.target_error (1% unless it is set), and
+fetches the picture then. Half the error takes two to four times as long. What is not traced (mode "refined" or "thesis",
+or no light on any glass) has nothing to converge and comes at once. --timeout counts for the whole of it.
 
 scripts/run.sh --shot FILE starts a server, takes the picture and stops the server.)";
 
@@ -58,6 +66,7 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     app.add_option("--height", options.height, "of the picture")->check(CLI::Range(16, 4096))->capture_default_str();
     app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1, 100000))->capture_default_str();
     app.add_flag("--moving", options.moving, "stream while the light circles, instead of stills: times the whole way");
+    app.add_flag("--converge", options.converge, "wait until the picture has converged to transport.target_error; shows how far it is");
     app.add_option("--timeout", options.timeoutS, "seconds to wait for the server, each time")
         ->check(CLI::Range(1, 3600))
         ->capture_default_str();
@@ -71,6 +80,7 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
         return wrong(error.what());
     }
 
+    if (options.converge && options.moving) return wrong("--converge waits for a scene at rest, --moving moves its light: choose one");
     auto address = connection::parseAddress(url);
     if (!address) return wrong(address.error());
     options.address = std::move(*address);

@@ -18,7 +18,8 @@ struct Options {
     std::string target = "composite";
     int width = 512, height = 512;
     int frames = 1;
-    bool moving = false;  // stream while the light moves, instead of stills
+    bool moving = false;    // stream while the light moves, instead of stills
+    bool converge = false;  // stream until nothing is left to gain
     int timeoutS = 120;   // for each thing that is waited for
     std::string token;
     std::string out;

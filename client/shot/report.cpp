@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "client/connection/convergence_text.h"
+
 namespace caustream::shot {
 namespace {
 
@@ -127,7 +129,11 @@ std::string Report::line(const std::string& file, const Frame& last, const Sessi
                   last.image.bands, last.header.renderUs / 1000.0);
     std::string line = file + text;
     const auto& stats = session.stats();
-    if (stats && stats->error) {
+    if (stats && stats->convergence) {
+        line += ", " + connection::convergenceText(*stats->convergence);
+        const bool there = last.header.flags & protocol::kFrameConverged;
+        line += there ? ", converged" : options_.converge ? "" : "; --converge waits for the rest";
+    } else if (stats && stats->error) {
         std::snprintf(text, sizeof text, ", map error about %.1f%%", 100.0 * stats->error->total);
         line += text;
     }

@@ -76,8 +76,8 @@ Session::Done Session::waitForScene(const Json& reference) {
     });
 }
 
-tl::expected<connection::Frame, Failure> Session::requestStill() {
-    connection_.requestFrame(true);
+tl::expected<connection::Frame, Failure> Session::requestStill(bool converge) {
+    connection_.requestFrame(true, converge);
     std::optional<connection::Frame> frame;
     const auto done = waitUntil("a frame", [&] { return (frame = connection_.takeRequested()).has_value(); });
     if (!done) return tl::make_unexpected(done.error());
@@ -89,6 +89,27 @@ tl::expected<connection::Frame, Failure> Session::nextStreamed() {
     const auto done = waitUntil("a frame", [&] { return (frame = connection_.takeFrame()).has_value(); });
     if (!done) return tl::make_unexpected(done.error());
     return std::move(*frame);
+}
+
+Session::Done Session::converge(const std::function<void(const protocol::Convergence&)>& progress) {
+    stats_.reset();
+    connection_.startStream(true);
+    std::uint32_t told = 0;
+    bool converged = false;
+    const auto done = waitUntil("the picture to converge", [&] {
+        if (const auto frame = connection_.takeFrame()) {
+            connection_.acknowledge(*frame, 0);
+            converged |= (frame->header.flags & protocol::kFrameConverged) != 0;
+        }
+        if (!stats_) return false;
+        if (stats_->convergence && stats_->frameSeq != told) {
+            told = stats_->frameSeq;
+            progress(*stats_->convergence);
+        }
+        return converged || !stats_->convergence;
+    });
+    connection_.pauseStream();
+    return done;
 }
 
 }  // namespace caustream::shot

@@ -1,6 +1,7 @@
 // A Connection seen from a program that has nothing else to do than wait for it.
 #pragma once
 #include <chrono>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,8 +26,11 @@ class Session {
     // Until the server's resolved document is of this scene, ["builtin", name] or ["asset", sha256]; null: of any.
     Done waitForScene(const protocol::Json& reference);
 
-    tl::expected<connection::Frame, Failure> requestStill();
+    // `converge`: as one is drawn at rest.
+    tl::expected<connection::Frame, Failure> requestStill(bool converge = false);
     tl::expected<connection::Frame, Failure> nextStreamed();
+    // Streams until the picture has converged, or turns out to have nothing to converge, and tells how far it is.
+    Done converge(const std::function<void(const protocol::Convergence&)>& progress);
 
     connection::Connection& connection() { return connection_; }
     const connection::Connection& connection() const { return connection_; }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "client/connection/image_file.h"
+#include "client/shot/progress_bar.h"
 #include "client/shot/report.h"
 #include "client/shot/session.h"
 #include "protocol/patch.h"
@@ -127,6 +128,12 @@ tl::expected<std::string, std::string> shoot(const Options& options) {
     if (auto configured = configure(session, options); !configured) return tl::make_unexpected(configured.error());
     if (options.moving) session.connection().startStream(true);
 
+    if (options.converge) {
+        ProgressBar bar;
+        if (auto converged = session.converge([&](const auto& reached) { bar.show(reached); }); !converged)
+            return tl::make_unexpected(converged.error());
+    }
+
     Report report(options, session);
     std::string file;
     for (int i = 0; i < options.frames; ++i) {
@@ -135,7 +142,7 @@ tl::expected<std::string, std::string> shoot(const Options& options) {
             const auto moved = session.connection().input(movedLight(session.state(), i));
             if (!moved) return tl::make_unexpected(moved.error().field + ": " + moved.error().message);
         }
-        auto frame = options.moving ? session.nextStreamed() : session.requestStill();
+        auto frame = options.moving ? session.nextStreamed() : session.requestStill(options.converge);
         if (!frame) return tl::make_unexpected(frame.error());
         session.connection().acknowledge(*frame, 0);
         report.add(*frame, connection::nowUs() - asked);

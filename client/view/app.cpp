@@ -60,8 +60,10 @@ void App::run() {
         const Rectangle area{0, 0, std::max(width - panelWidth, 16), std::max(height, 16)};
         window_.beginFrame();
         handleMouse(picture_.fit(area));
-        if (controls_.panel) drawPanel(model_, controls_, editor_, static_cast<float>(panelWidth));
+        const protocol::Convergence* convergence = model_.convergence(nowS);
+        if (controls_.panel) drawPanel(model_, controls_, editor_, static_cast<float>(panelWidth), convergence);
         drawMessages(model_, static_cast<float>(area.width));
+        if (convergence) drawProgress(*convergence, static_cast<float>(area.width));
         ImGui::Render();
         if (std::exchange(controls_.save, false)) startSaving(nowS);
 
@@ -192,7 +194,7 @@ void App::startSaving(double nowS) {
     if (savingSinceS_ >= 0.0) return;
     editor_.flush(nowS + 1.0);  // what was changed a moment ago belongs into the picture
     if (model_.stream.target != protocol::Target::Spectral) connection_.update({{"stream", {{"encoding", "raw"}}}});
-    if (connection_.requestFrame(true) == 0) return model_.say(true, "no connection, nothing to save", nowS);
+    if (connection_.requestFrame(true, true) == 0) return model_.say(true, "no connection, nothing to save", nowS);
     savingSinceS_ = nowS;
 }
 
@@ -211,12 +213,8 @@ void App::finishSaving(const connection::Frame& frame, double nowS) {
 void App::displayed(const connection::Frame& frame, double nowS) {
     const auto& header = frame.header;
     frameTimesS_.push_back(nowS);
-    model_.frameWidth = frame.image.width;
-    model_.frameHeight = frame.image.height;
-    model_.renderMs = header.renderUs / 1000.0;
-    model_.encodeMs = header.encodeUs / 1000.0;
+    model_.shown(header, nowS);
     model_.decodeMs = frame.decodeUs / 1000.0;
-    model_.payloadKb = header.payloadLen / 1000.0;
     // Only of the first frame that shows an input: a later one would count the time since.
     if (header.inputSeq == shownInput_ || header.clientUs == 0) return;
     shownInput_ = header.inputSeq;

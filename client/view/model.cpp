@@ -8,6 +8,7 @@ namespace caustream::view {
 namespace {
 
 constexpr double kMessageS = 8.0, kErrorS = 15.0;
+constexpr double kRestS = 0.2;  // for which a picture is the same before it counts as one that rests
 // Fraunhofer lines, um.
 constexpr double kF_um = 0.48613, kD_um = 0.58756, kC_um = 0.65627;
 
@@ -62,6 +63,23 @@ LightPath Model::pathOf(LightModel& edited) const {
     const Room room{vec(scene.bounds->min), vec(scene.bounds->max)};
     if (room.holds(edited.pose.position) && room.holds(path.target)) path.room = room;
     return path;
+}
+
+void Model::shown(const protocol::FrameHeader& header, double nowS) {
+    frameWidth = header.width;
+    frameHeight = header.height;
+    renderMs = header.renderUs / 1000.0;
+    encodeMs = header.encodeUs / 1000.0;
+    payloadKb = header.payloadLen / 1000.0;
+    if (header.stateRev == shownRev_) return;
+    shownRev_ = header.stateRev;
+    shownSinceSeq_ = header.frameSeq;
+    shownSinceS_ = nowS;
+}
+
+const protocol::Convergence* Model::convergence(double nowS) const {
+    const bool current = connected && stats && stats->convergence && stats->frameSeq >= shownSinceSeq_;
+    return current && nowS - shownSinceS_ >= kRestS ? &*stats->convergence : nullptr;
 }
 
 void Model::say(bool error, std::string text, double nowS) {
@@ -135,6 +153,8 @@ bool Model::take(const connection::Event& event, double nowS) {
                 connected = true;
                 connection = value.gpu;
                 statuses.clear();
+                stats.reset();  // a new connection counts its frames from 1 again
+                shownRev_ = shownSinceSeq_ = 0;
             } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
                 another = takeState(value, nowS);
             } else if constexpr (std::is_same_v<T, protocol::ErrorMessage>) {

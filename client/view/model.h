@@ -57,6 +57,11 @@ struct Model {
     double roundTripMs = 0, latencyMs = 0, frameRate = 0, renderMs = 0, encodeMs = 0, decodeMs = 0, payloadKb = 0;
     int frameWidth = 0, frameHeight = 0;
 
+    // A frame is on the screen.
+    void shown(const protocol::FrameHeader& header, double nowS);
+    // How far the picture on the screen has come, once it rests; nothing: it moves, or has nothing to converge.
+    const protocol::Convergence* convergence(double nowS) const;
+
     LightModel* editedLight();
     // Takes what an event says. True when the scene is another one than before.
     bool take(const connection::Event& event, double nowS);
@@ -67,6 +72,9 @@ struct Model {
     LightPath pathOf(LightModel& edited) const;
 
  private:
+    std::uint32_t shownRev_ = 0, shownSinceSeq_ = 0;  // the state on the screen, and its first frame
+    double shownSinceS_ = 0.0;
+
     bool takeState(const protocol::StateMessage& message, double nowS);
 };
 

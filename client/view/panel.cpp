@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "client/connection/convergence_text.h"
+
 namespace caustream::view {
 namespace {
 
@@ -256,7 +258,7 @@ bool section(const char* name, bool open = true) {
 
 }  // namespace
 
-void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
+void drawPanel(Model& model, Controls& controls, Editor& editor, float width, const protocol::Convergence* convergence) {
     const ImGuiIO& io = ImGui::GetIO();
     ImGui::SetNextWindowPos({io.DisplaySize.x - width, 0});
     ImGui::SetNextWindowSize({width, io.DisplaySize.y});
@@ -268,7 +270,9 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
     ImGui::SameLine();
     ImGui::TextWrapped("%s", model.connection.c_str());
 
-    if (model.connected && model.frameRate < 2.0)
+    if (convergence)
+        ImGui::TextDisabled(convergence->converged ? "converged: %s" : "converging: %s", connection::convergenceText(*convergence).c_str());
+    else if (model.connected && model.frameRate < 2.0)
         ImGui::TextDisabled("at rest: nothing changes, nothing is drawn");
     else if (model.connected)
         ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
@@ -285,6 +289,14 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width) {
     if (section("Spectral map")) drawTransport(model, editor);
     drawReadout(model);
     ImGui::End();
+}
+
+void drawProgress(const protocol::Convergence& convergence, float pictureWidth) {
+    if (convergence.converged) return;
+    const float bottom = ImGui::GetIO().DisplaySize.y, top = bottom - 0.2f * ImGui::GetFontSize();
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled({0, top}, {pictureWidth, bottom}, IM_COL32(0, 0, 0, 110));
+    list.AddRectFilled({0, top}, {pictureWidth * static_cast<float>(convergence.progress), bottom}, IM_COL32(255, 181, 74, 220));
 }
 
 void drawMessages(const Model& model, float pictureWidth) {

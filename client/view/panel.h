@@ -15,10 +15,13 @@ struct Controls {
 
 constexpr float kPanelWidth = 350.0f;  // at scale 1
 
-// Draws it at the right edge of the display, `width` pixels wide.
-void drawPanel(Model& model, Controls& controls, Editor& editor, float width);
+// Draws it at the right edge of the display, `width` pixels wide. `convergence`: of the picture, if it has one and rests.
+void drawPanel(Model& model, Controls& controls, Editor& editor, float width, const protocol::Convergence* convergence);
 // Over the picture: messages, statuses, what is wrong.
 void drawMessages(const Model& model, float pictureWidth);
+
+// A thin bar along the picture's lower edge, while it converges.
+void drawProgress(const protocol::Convergence& convergence, float pictureWidth);
 
 // The panel's last part: rates, stage times, plan, ledger.
 void drawReadout(const Model& model);

@@ -4,20 +4,25 @@
 #include <cfloat>
 #include <cstdio>
 
+#include "client/connection/convergence_text.h"
 #include "client/view/panel.h"
 
 namespace caustream::view {
 namespace {
 
-void row(const char* name, const char* format, double value) {
+void row(const char* name, const char* text) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%s", name);
     ImGui::TableNextColumn();
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text).x);
     ImGui::TextUnformatted(text);
+}
+
+void row(const char* name, const char* format, double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, format, value);
+    row(name, text);
 }
 
 bool beginTable(const char* id) {
@@ -36,6 +41,10 @@ void drawRates(const Model& model) {
     row("frame size", "%.0f kB", model.payloadKb);
     if (model.stats) {
         row("photons", "%.0f", model.stats->photons);
+        if (const auto& convergence = model.stats->convergence) {
+            row("photons in the map", connection::countText(convergence->photons).c_str());
+            row("converges to", "%.2g %%", 100.0 * convergence->target);
+        }
         row("dropped", "%.0f", model.stats->dropped);
         row("acknowledgement window", "%.0f", model.stats->window);
     }
@@ -84,6 +93,7 @@ void drawLedger(const protocol::Ledger& ledger) {
     part("rejected", ledger.rejected);
     part("outside the map", ledger.leftMap);
     part("no receiver", ledger.noReceiver);
+    part("too faint, or too many bounces", ledger.cut);
     ImGui::EndTable();
 }
 

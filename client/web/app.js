@@ -5,7 +5,8 @@ import { Files } from './files.js';
 import { parseFrame } from './frame.js';
 import { Panel } from './panel.js';
 import { dragLight, orbit, pan, project, zoom } from './poses.js';
-import { showRates, showStats } from './readout.js';
+import { showConvergence, showRates, showStats } from './readout.js';
+import { Rest } from './rest.js';
 import { Session } from './session.js';
 import { View } from './view.js';
 
@@ -16,9 +17,10 @@ const kMaxPixelRatio = 2;
 const kSoftwarePixels = 300_000;    // what a server without a GPU draws fast enough to drag; a still may wait
 const kFallbackLimits = { frame_min_side: 16, frame_max_side: 4096, frame_pixels: 8_300_000 };
 
-let welcome = null, lightMode = false, roundTripMs = null;
+let welcome = null, lightMode = false, roundTripMs = null, newestStats = null;
 let stale = false;    // the panel shows an older document
 
+const rest = new Rest();
 const connection = new Connection(socketUrl(), {
     hello: () => ({ ...session.resumption(), ...(sessionStorage.token ? { token: sessionStorage.token } : {}) }),
     forget: () => session.forget(),
@@ -27,7 +29,7 @@ const connection = new Connection(socketUrl(), {
     frame: (buffer, recvUs) => receiveFrame(buffer, recvUs),
     'stream.info': (info) => panel.streamInfo(info),
     'asset.credit': (message) => files.credit(message),
-    stats: (stats) => { showStats(stats); panel.exposure(stats.exposure_ev ?? 0); },
+    stats: (stats) => { showStats(stats); panel.exposure(stats.exposure_ev ?? 0); newestStats = stats; },
     status: ({ level, message }) => (level === 'info' ? status(message || connectedText()) : problem(message)),
     refused: (error) => problem(sentence(error)),
     roundTrip: (ms) => (roundTripMs = roundTripMs === null ? ms : 0.7 * roundTripMs + 0.3 * ms),
@@ -40,7 +42,7 @@ const session = new Session(connection, {
 const view = new View(canvas, {
     ack: (fields) => connection.send({ op: 'ack', ...fields }),
     failed: (error) => problem(sentence(error)),
-    painted: () => stage.classList.remove('away'),
+    painted: (frame) => { stage.classList.remove('away'); rest.painted(frame); },
 });
 const panel = new Panel(session, view);
 const files = new Files(connection, session, { status, problem, added: (sha256, name) => panel.addUploaded(sha256, name) });
@@ -53,6 +55,8 @@ function socketUrl() {
 
 async function start(message) {
     welcome = message;
+    newestStats = null;
+    rest.reset();
     files.limits = message.limits;
     view.reset();
     panel.welcome(message);
@@ -196,6 +200,7 @@ function everyFrame() {
         panel.refresh();
         showLamp();
     }
+    showConvergence(connection.ready && newestStats && rest.shows(newestStats.frame_seq) ? newestStats.convergence : null);
     requestAnimationFrame(everyFrame);
 }
 requestAnimationFrame(everyFrame);

@@ -78,7 +78,7 @@ export class Files {
         byId('save').disabled = true;
         try {
             if (isPicture) await this.connection_.request('update', { patch: { stream: { encoding: 'png' } } });
-            const { frame_seq } = await this.connection_.request('frame.request', { still: true });
+            const { frame_seq } = await this.connection_.request('frame.request', { still: true, converge: true });
             const frame = await new Promise((resolve, reject) => (this.awaited_ = { seq: frame_seq, resolve, reject }));
             const isPng = frame.encoding === Encoding.png;
             const blob = isPng ? frameBlob(frame) : await new Promise((done) => canvas.toBlob(done, 'image/png'));

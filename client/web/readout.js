@@ -9,6 +9,7 @@ const kLedger = [
     ['rejected', 'Found no exact hit'],
     ['left_map', 'Left the map'],
     ['no_receiver', 'Met no surface'],
+    ['cut', 'Too faint, or too many bounces'],
 ];
 
 function cell(text, className = '') {
@@ -37,6 +38,25 @@ function bar(value, max, label) {
 const milliseconds = (ms) => `${ms < 10 ? ms.toFixed(1) : ms.toFixed(0)} ms`;
 const perCent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 const words = (name) => name.replaceAll('_', ' ');
+
+// 8,214; 412 thousand; 1.2 million; 3.4 billion.
+function count(number) {
+    if (number >= 999_950_000) return `${(number / 1e9).toFixed(1)} billion`;
+    if (number >= 999_500) return `${(number / 1e6).toFixed(1)} million`;
+    if (number >= 10_000) return `${(number / 1e3).toFixed(0)} thousand`;
+    return number.toLocaleString('en');
+}
+
+// convergence: of the picture on the screen, while it rests; nothing: it moves, or has nothing to converge.
+export function showConvergence(convergence) {
+    const bar = byId('convergence'), line = byId('convergence-line');
+    bar.hidden = !convergence || convergence.converged;
+    bar.value = convergence?.progress ?? 0;
+    line.hidden = !convergence;
+    if (!convergence) return;
+    line.textContent = `${convergence.converged ? 'Converged' : 'Converging'}: ${count(convergence.photons)} photons, error about ` +
+        `${perCent(convergence.error)}${convergence.converged ? '' : ` of ${perCent(convergence.target)}`}.`;
+}
 
 export function showRates({ fps, roundTripMs, latencyMs }) {
     byId('fps').textContent = fps ? `${fps} /s` : 'at rest';

@@ -105,7 +105,7 @@ const std::vector<MessageSample<ClientMessage>>& clientSamples() {
         {StreamStart{5, true}, R"({"id":5,"op":"stream.start","stats":true})"},
         {StreamPause{6}, R"({"id":6,"op":"stream.pause"})"},
         {StreamResume{4294967295}, R"({"id":4294967295,"op":"stream.resume"})"},
-        {FrameRequest{8, true}, R"({"id":8,"op":"frame.request","still":true})"},
+        {FrameRequest{8, true, true}, R"({"converge":true,"id":8,"op":"frame.request","still":true})"},
         {Ack{9, 123456789012, 1500, 700},
          R"({"decode_us":1500,"op":"ack","paint_us":700,"recv_us":123456789012,"seq":9})"},
         {AssetBegin{10, kHash, 67108864, "model/gltf-binary"},

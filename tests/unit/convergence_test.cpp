@@ -224,10 +224,11 @@ TEST_F(ConvergenceTest, WhatMovesGoesFirstThenStillsAndThoseAtRestTakeTurns) {
 
 TEST_F(ConvergenceTest, AnAnswerToARequestSaysNothingOfTheStream) {
     first(1, 1000);
-    ASSERT_TRUE(scheduler_.request(1, 7, true));
+    ASSERT_TRUE(scheduler_.request(1, 7, true, true));
     const auto answer = next(2000);
-    ASSERT_TRUE(answer && answer->requestId);
+    ASSERT_TRUE(answer && answer->requestId && answer->converge);
     EXPECT_FALSE(answer->resting());
+    EXPECT_FALSE(answer->endsConvergence(reached(1.0)));
     scheduler_.drawn(*answer, reached(1.0));
     scheduler_.finished(*answer);
     const auto job = next(1000 + kRest);
