@@ -28,9 +28,11 @@ bool slider(const char* text, const char* id, double& value, double low, double 
                                ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
 }
 
-// Of the control that was drawn last.
+// Of the control that was drawn last; beside the panel, where it hides no other control.
 void tooltip(const char* text) {
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::SetNextWindowPos({ImGui::GetWindowPos().x - 8, ImGui::GetMousePos().y}, ImGuiCond_Always, {1, 0.5f});
+    ImGui::SetTooltip("%s", text);
 }
 
 // The chosen name, when another one was chosen.
@@ -271,13 +273,16 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width, co
     ImGui::TextWrapped("%s", model.connection.c_str());
 
     if (convergence)
-        ImGui::TextDisabled(convergence->converged ? "converged: %s" : "converging: %s", connection::convergenceText(*convergence).c_str());
+        ImGui::TextDisabled(convergence->converged ? "converged: %s photons" : "converging: %s photons",
+                            connection::countText(convergence->photons).c_str());
     else if (model.connected && model.frameRate < 2.0)
         ImGui::TextDisabled("at rest: nothing changes, nothing is drawn");
     else if (model.connected)
         ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
 
-    if (model.connected && model.stats && model.stats->error)
+    if (convergence)
+        ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", model.renderMs, 100.0 * convergence->error);
+    else if (model.connected && model.stats && model.stats->error)
         ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", model.renderMs, 100.0 * model.stats->error->total);
     else if (model.connected)
         ImGui::TextDisabled("frame %.1f ms", model.renderMs);
