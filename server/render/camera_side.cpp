@@ -4,33 +4,99 @@
 
 namespace caustream::render {
 
+namespace {
+
+// What a frame affords: in motion, at rest (where frames add up), in a still.
+constexpr CameraPaths::Settings kMoving{.rays = 2, .bounces = 1, .branches = 1, .least = 1.0f / 32.0f, .caustics = false};
+constexpr CameraPaths::Settings kAtRest{.rays = 2, .branches = 1, .least = 1.0f / 64.0f}, kStill{.rays = 8};
+constexpr int kSamplesOfOne = 32, kSamplesOfMany = 96;   // a pixel at rest: of one convex caster, of others
+
+// Casters that are drawn, from back to front: refracting ones, where wanted, and thin walls.
+std::vector<const scene::Object*> fromBackToFront(const scene::Scene& scene, const View& view, bool refracting, bool thin) {
+    std::vector<const scene::Object*> order;
+    for (const scene::Object& object : scene.geometry->objects) {
+        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+        if ((refracting && refracts(material, scene.outsideIndex)) || (thin && material.caster && material.thinWalled)) order.push_back(&object);
+    }
+    std::sort(order.begin(), order.end(), [&](const scene::Object* a, const scene::Object* b) {
+        return view.toView(a->bounds.centre()).z < view.toView(b->bounds.centre()).z;
+    });
+    return order;
+}
+
+}  // namespace
+
 void CameraSide::run(const Inputs& in, gl::StageTimer& timer) {
-    const bool thesis = in.request.transport.mode == Mode::Thesis;
+    const Request& request = in.request;
+    inARow_ = request.target == Target::Composite && (!request.still || in.plan.runs("picture_mean"));
+    if (in.plan.runs("picture_mean")) return rest(in, timer);
+    CameraPaths::Settings settings = request.still ? kStill : kMoving;
+    settings.bounces = request.still ? request.transport.bounces : std::min(settings.bounces, request.transport.bounces);
+    draw(in, settings, timer);
+    if (inARow_) progress_.move(pictureKey(request), color_);
+    else progress_.interrupt();
+}
+
+// Weights grow as the square of the photons: light of the first frames, which is noisy, soon counts for nothing, without
+// the picture ever beginning anew.
+void CameraSide::rest(const Inputs& in, gl::StageTimer& timer) {
+    const bool lone = in.surfaces->lone();
+    const auto sample = progress_.begin(pictureKey(in.request), in.photons * in.photons, lone ? kSamplesOfOne : kSamplesOfMany, color_);
+    View view = in.view;
+    view.shift = 2.0f * sample.shift / glm::vec2(in.width, in.height);
+    const Inputs shifted{in.request, in.gpu, view, in.lighting, in.maps, in.plan, in.width, in.height, in.surfaces, in.photons, in.scale};
+    CameraPaths::Settings settings = kAtRest;
+    if (!lone) settings.rays = 1, settings.branches = 0;   // a path each: its steps are many, and others follow
+    settings.bounces = in.request.transport.bounces;
+    settings.rotation = sample.rotation;
+    settings.sample = progress_.samples() + 1;
+    draw(shifted, settings, timer);
+    timer.stage("picture_mean", [&] { progress_.add(color_, in.scale); });
+}
+
+ProgressivePicture::Shown CameraSide::shown(bool exact) const {
+    if (inARow_) return progress_.shown(exact);
+    return {&color_, nullptr, 1.0f, 1.0f};
+}
+
+void CameraSide::draw(const Inputs& in, const CameraPaths::Settings& settings, gl::StageTimer& timer) {
+    const scene::Scene& scene = *in.request.scene;
+    const bool thesis = in.request.transport.mode == Mode::Thesis, traced = in.plan.runs("camera_paths");
     const char* const shading = thesis ? "thesis_receivers" : "camera_receivers";
     if (in.plan.runs(shading)) {
         timer.stage(shading, [&] {
-            receivers_.run({in.gpu, in.request.scene->materials, in.lighting, in.view, in.width, in.height, thesis, in.request.forced},
+            receivers_.run({in.gpu, scene.materials, in.lighting, in.view, in.width, in.height, thesis, in.request.forced, in.plan.traced},
                            {color_, depth_});
         });
     }
-    if (in.plan.runs("camera_casters")) seeThrough(in, timer);
+    if (!traced) {
+        if (in.plan.runs("camera_casters")) seeThrough(in, fromBackToFront(scene, in.view, true, !thesis), timer);   // which has no thin walls
+        return;
+    }
+    // Thin walls behind the solid casters' middle are seen through those, others before them.
+    const auto thin = fromBackToFront(scene, in.view, false, true);
+    const float middle = in.view.toView(scene.geometry->casterBounds.centre()).z;
+    const auto between = std::find_if(thin.begin(), thin.end(), [&](const scene::Object* o) { return in.view.toView(o->bounds.centre()).z >= middle; });
+    seeThrough(in, {thin.begin(), between}, timer);
+    tracePaths(in, settings, timer);
+    seeThrough(in, {between, thin.end()}, timer);
 }
 
-// Casters from back to front, each into the picture of what is behind it.
-void CameraSide::seeThrough(const Inputs& in, gl::StageTimer& timer) {
+void CameraSide::tracePaths(const Inputs& in, const CameraPaths::Settings& settings, gl::StageTimer& timer) {
+    const SpectralEntries spectrum = spectralEntries(in.maps.wavelengths);
+    const glm::mat3 xyzToRgb(in.maps.wavelengths.xyzToRgb);
+    timer.stage("camera_paths", [&] {
+        paths_.run({*in.surfaces, spectrum, xyzToRgb, *in.request.scene, in.gpu, in.lighting, in.view, depth_, settings.sample > 0 ? progress_.mean() : nullptr, in.request.forced.has(Omission::Box)},
+                   settings, color_);
+    });
+}
+
+void CameraSide::seeThrough(const Inputs& in, const std::vector<const scene::Object*>& order, gl::StageTimer& timer) {
+    if (order.empty()) return;
     const Request& request = in.request;
     const scene::Scene& scene = *request.scene;
     const bool thesis = request.transport.mode == Mode::Thesis;
     const char* const through = thesis ? "thesis_refraction" : "dispersive_refraction";
-    std::vector<const scene::Object*> order;
-    for (const scene::Object& object : scene.geometry->objects) {
-        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
-        const bool thin = material.caster && material.thinWalled && !thesis;   // which has none
-        if (refracts(material, scene.outsideIndex) || thin) order.push_back(&object);
-    }
-    std::sort(order.begin(), order.end(), [&](const scene::Object* a, const scene::Object* b) {
-        return in.view.toView(a->bounds.centre()).z < in.view.toView(b->bounds.centre()).z;
-    });
     const bool refracted = in.plan.runs(through);
     if (refracted) timer.stage(through, [&] { thesis ? thesisRefraction_.begin(color_) : refraction_.begin(color_); });
     for (const scene::Object* object : order) {

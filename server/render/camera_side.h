@@ -8,10 +8,12 @@
 #include "render/light_side.h"
 #include "render/lighting.h"
 #include "render/passes/camera_casters.h"
+#include "render/passes/camera_paths.h"
 #include "render/passes/camera_receivers.h"
 #include "render/passes/dispersive_refraction.h"
 #include "render/passes/thesis_refraction.h"
 #include "render/plan.h"
+#include "render/progressive_picture.h"
 #include "render/view.h"
 
 namespace caustream::render {
@@ -26,27 +28,38 @@ class CameraSide {
         const LightMaps& maps;
         const RenderPlan& plan;
         int width, height;         // pixels drawn, which `present` may average
+        const ExactSurfaces* surfaces = nullptr;   // where the plan is to trace
+        double photons = 1.0;      // in the map so far: how good the picture's light is
+        float scale = 1.0f;        // as `present` multiplies it
     };
 
     explicit CameraSide(gl::ShaderLibrary& shaders)
-        : receivers_(shaders), casters_(shaders), refraction_(shaders), thesisRefraction_(shaders) {}
+        : receivers_(shaders), casters_(shaders), refraction_(shaders), thesisRefraction_(shaders), paths_(shaders), progress_(shaders) {}
 
-    // Submits the passes that the plan runs.
+    // Submits the passes that the plan runs. At rest the picture is added to the mean of those before.
     void run(const Inputs& in, gl::StageTimer& timer);
     // Compile every variant, so that no frame has to.
     void warmUpReceivers() { receivers_.warmUp(); }
     void warmUpCasters() { refraction_.warmUp(); }
 
-    const gl::Texture& color() const { return color_; }   // RGBA16F, linear BT.709 radiance over radianceUnit()
+    // RGBA16F or 32F, linear BT.709 radiance over radianceUnit(). `exact`: without passage from moving to rest and back.
+    ProgressivePicture::Shown shown(bool exact) const;
+    const ProgressivePicture& progress() const { return progress_; }
     const gl::Texture& front() const { return front_; }   // layer of the last caster, for looking at the pass
 
    private:
-    void seeThrough(const Inputs& in, gl::StageTimer& timer);
+    void draw(const Inputs& in, const CameraPaths::Settings& settings, gl::StageTimer& timer);
+    void rest(const Inputs& in, gl::StageTimer& timer);
+    void tracePaths(const Inputs& in, const CameraPaths::Settings& settings, gl::StageTimer& timer);
+    void seeThrough(const Inputs& in, const std::vector<const scene::Object*>& order, gl::StageTimer& timer);
 
     CameraReceivers receivers_;
     CameraCasters casters_;
     DispersiveRefraction refraction_;
     ThesisRefraction thesisRefraction_;
+    CameraPaths paths_;
+    ProgressivePicture progress_;
+    bool inARow_ = false;                         // the last picture is one of those that progress_ watches
     gl::Texture color_, depth_, front_, back_;
 };
 

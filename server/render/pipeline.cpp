@@ -37,7 +37,7 @@ constexpr float kAutoKey = 0.8f;             // picture value of a white receive
 // Names of Target::Pass and what each shows.
 const std::vector<std::string> kPassNames = {"caster_layers",    "receiver_depth", "shadow",
                                              "map_resolve",      "outer_map",      "camera_receivers",
-                                             "camera_casters",   "dispersive_refraction"};
+                                             "camera_casters",   "dispersive_refraction", "camera_paths"};
 
 // Everything that the light's side depends on, byte by byte; equal keys mean equal maps.
 class LightKey {
@@ -102,6 +102,12 @@ struct SceneEntry {
     CoarseTrace tracer;
     Enclosure enclosure;
     std::shared_ptr<const scene::Geometry> geometry;
+    std::unique_ptr<ExactSurfaces> surfaces;  // made when first traced
+
+    const ExactSurfaces& exact(const scene::Scene& scene) {
+        if (!surfaces) surfaces = std::make_unique<ExactSurfaces>(scene);
+        return *surfaces;
+    }
 };
 
 struct LightEntry {
@@ -272,7 +278,11 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
 
 // The image that the request asks for, in `output`, rows top to bottom.
 void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scale) {
-    Present::Inputs in{.image = cameraSide.color().get(), .mode = Present::Mode::Picture, .scale = scale, .downsample = request.still};
+    const bool linear = request.target == Target::Composite && request.sample != Sample::U8;
+    const ProgressivePicture::Shown shown = cameraSide.shown(linear);
+    Present::Inputs in{.image = shown.image->get(), .mode = Present::Mode::Picture, .scale = scale * shown.gain,
+                       .before = shown.before ? shown.before->get() : 0, .share = shown.share,
+                       .downsample = shown.image->width() > request.width};
     if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = mapOf(maps, request.transport.mapSize).get(), .mode = Present::Mode::Map};
     if (request.target == Target::Pass) {
         const bool thesis = request.transport.mode == Mode::Thesis;
@@ -284,7 +294,6 @@ void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scal
         if (request.pass == "outer_map") in = {.image = maps.outerMap.get(), .mode = Present::Mode::Map};
         if (request.pass == "camera_casters") in = {.image = cameraSide.front().get(), .mode = Present::Mode::Normals};
     }
-    const bool linear = request.target == Target::Composite && request.sample != Sample::U8;
     if (linear) in.mode = Present::Mode::Linear;
     present.run(in, request.width, request.height, linear ? GL_RGBA32F : GL_RGBA8, {output});
 }
@@ -371,8 +380,9 @@ Frame Pipeline::run(const Request& asked) {
     const float unit = radianceUnit(lighting);
     const float scale = request.exposureEv ? std::exp2(*request.exposureEv) * unit : kAutoKey * std::exp2(scene.exposureBiasEv);
     frame.stats.exposureEv = std::log2(scale / unit);
-    const int zoom = request.still ? 2 : 1;
-    impl.cameraSide.run({request, entry.gpu, view, lighting, maps, plan, zoom * request.width, zoom * request.height}, impl.timer);
+    const int zoom = request.still && !plan.runs("picture_mean") ? 2 : 1;   // pictures that add up have their own anti-aliasing
+    impl.cameraSide.run({request, entry.gpu, view, lighting, maps, plan, zoom * request.width, zoom * request.height,
+                         plan.traced ? &entry.exact(scene) : nullptr, 1.0, scale}, impl.timer);
     const bool floats = !plan.runs("present");
     if (!floats) impl.timer.stage("present", [&] { impl.picture(request, maps, request.sample == Sample::U8 ? scale : unit); });
 

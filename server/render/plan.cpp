@@ -27,7 +27,7 @@ Shown shownBy(const Request& request) {
         shown.why = "the spectral map is shown as a picture";
         shown.whyNot = shown.present ? shown.why : "the spectral map is sent, not a picture";
     } else if (request.target == Target::Pass) {
-        const bool refraction = request.pass == "dispersive_refraction";
+        const bool refraction = request.pass == "dispersive_refraction" || request.pass == "camera_paths";
         const bool casters = request.pass == "camera_casters";
         shown.refraction = refraction;
         shown.casters = refraction || casters;
@@ -157,8 +157,23 @@ void addCameraSide(RenderPlan& plan, const PlanFacts& facts, const Request& requ
     if (!facts.absorbing) optics.push_back("absorption: no glass absorbs");
     if (!request.still) optics.push_back("a ray for each node and sharp reflections: the picture moves");
     optics.insert(optics.end(), box.begin(), box.end());
-    rows.add("camera_casters", (shown.casters || forced) && inView, glass, shown.casters ? noGlass : shown.whyNot, box);
-    rows.add("dispersive_refraction", (shown.refraction || forced) && inView, glass, shown.refraction ? noGlass : shown.whyNot, optics);
+    if (plan.traced) {
+        const std::string thin = counted(facts.thinWalled, "thin-walled caster"), traced = "camera_paths draws the casters";
+        const bool walls = inView && facts.thinWalled > 0;
+        rows.add("camera_casters", (shown.casters || forced) && walls, thin, shown.casters ? traced : shown.whyNot, box);
+        rows.add("dispersive_refraction", (shown.refraction || forced) && walls, thin, shown.refraction ? traced : shown.whyNot, box);
+        Without paths;
+        if (!request.still && !request.converge) paths.push_back("more than two bounces and three wavelengths a pixel: the picture moves");
+        paths.insert(paths.end(), box.begin(), box.end());
+        const bool mirrors = plan.casters > facts.casters;
+        rows.add("camera_paths", (shown.refraction || forced) && (inView || mirrors), facts.glassInCamera ? glass : "mirrors",
+                 shown.refraction ? noGlass : shown.whyNot, paths);
+        rows.add("picture_mean", request.converge && request.target == Target::Composite, "nothing moves: pictures add up",
+                 request.converge ? shown.whyNot : "the picture moves");
+    } else {
+        rows.add("camera_casters", (shown.casters || forced) && inView, glass, shown.casters ? noGlass : shown.whyNot, box);
+        rows.add("dispersive_refraction", (shown.refraction || forced) && inView, glass, shown.refraction ? noGlass : shown.whyNot, optics);
+    }
     rows.add("present", shown.present, shown.why, shown.whyNot, request.still ? Without{} : Without{"averaging of 4 pixels: the picture moves"});
 }
 
@@ -166,6 +181,7 @@ RenderPlan makePlan(const PlanFacts& facts, const Request& request) {
     if (request.transport.mode == Mode::Thesis) return makeThesisPlan(facts, request);
     RenderPlan plan;
     plan.casters = facts.casters;
+    plan.traced = request.transport.mode == Mode::Traced;
     chooseWavelengths(plan, facts, request);
     const bool caustics = addLightSide(plan, facts, request);
     addCameraSide(plan, facts, request, caustics && !request.wavelengthBands);

@@ -40,6 +40,7 @@ struct RenderPlan {
     std::string wavelengthReason;
     int casters = 0;                    // that refract
     bool shadow = false;                // something throws one
+    bool traced = false;                // exact transport: photon_paths, camera_paths
 
     bool runs(const std::string& pass) const;
 };

@@ -12,12 +12,14 @@ glm::mat4 View::viewToClip() const {
     clip[0][0] = 1.0f / halfExtent.x;
     clip[1][1] = 1.0f / halfExtent.y;
     if (perspective) {
+        clip[2][0] = -shift.x;
+        clip[2][1] = -shift.y;
         clip[2][3] = -1.0f;   // w = z
         clip[3][2] = nearM;   // depth = near / z
     } else {
         clip[2][2] = 1.0f / (farM - nearM);
         clip[3][2] = farM / (farM - nearM);
-        clip[3][3] = 1.0f;
+        clip[3] = glm::vec4(shift, clip[3][2], 1.0f);
     }
     return clip;
 }

@@ -14,6 +14,7 @@ struct View {
     glm::vec2 halfExtent{1.0f};        // perspective: tangents of the half angles; parallel: metres
     float nearM = 0.01f, farM = 100.0f;
     bool perspective = true;
+    glm::vec2 shift{0.0f};             // of what is drawn, in halves of the window: to sample pixels beside their middles
 
     // Reversed depth in 0..1 with GL_ZERO_TO_ONE: near/z (perspective, no far plane), 1 at near to 0 at far (parallel).
     // Both are linear in the image on a plane. Cleared to 0, tested with GL_GREATER.

@@ -1,4 +1,4 @@
-// One program per mode (MODE: Present::Mode), with DOWNSAMPLE for an image of twice the size a side: each of the four
+// One program per mode (MODE: Present::Mode); with FADE a picture takes the place of another; with DOWNSAMPLE for an image of twice the size a side: each of the four
 // pixels is brought to display range before they are averaged, so that bright edges stay smooth.
 #include "common/tone.glsl"
 #include "common/false_colour.glsl"
@@ -6,11 +6,18 @@ uniform sampler2D u_image;
 uniform float u_scale;
 uniform ivec2 u_size;      // of the output
 uniform bool u_depthImage;
+#if FADE
+uniform sampler2D u_before;
+uniform float u_share;     // of u_image
+#endif
 layout(location = 0) out vec4 o_color;
 
 vec3 shown(ivec2 at) {
     vec4 value = texelFetch(u_image, at, 0);
-#if MODE == 0
+#if MODE == 0 && FADE
+    vec3 before = toneCurve(intoGamut(texelFetch(u_before, at, 0).rgb * u_scale));
+    return mix(before, toneCurve(intoGamut(value.rgb * u_scale)), u_share);
+#elif MODE == 0
     return toneCurve(intoGamut(value.rgb * u_scale));
 #elif MODE == 1
     return value.rgb * u_scale;

@@ -1,9 +1,6 @@
 #include "render/passes/camera_receivers.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/trigonometric.hpp>
-#include <string>
 
 #include "gl/uniforms.h"
 #include "render/light_uniforms.h"
@@ -13,24 +10,13 @@ namespace caustream::render {
 
 namespace {
 
-constexpr std::size_t kMaxLights = 8;  // u_lights of the shader
-
 // MAP of the shader.
 enum Maps : int { kNoMap, kInnerMap, kBothMaps };
 
-// Texture units, one for each sampler of the shader.
-enum Unit : int { kBaseColor, kShadow, kMap, kOuterMap, kCookie };
+enum Unit : int { kBaseColor, kShading };
 
 std::vector<gl::Flag> flags(bool shadow, int map, bool texture, bool full) {
     return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}, {"RAYS", 0}};
-}
-
-// The square around the outer cone, which a cookie spans; upright in the world.
-View cookieView(const scene::Light& light) {
-    View view;
-    view.worldToView = lookAlong(light.position, light.direction, glm::vec3(0, 1, 0));
-    view.halfExtent = glm::vec2(std::tan(glm::radians(std::min(light.outerConeDeg, 89.0f))));
-    return view;
 }
 
 }  // namespace
@@ -44,38 +30,16 @@ bool inView(const scene::Object& object, const View& view) {
 
 CameraReceivers::CameraReceivers(gl::ShaderLibrary& shaders)
     : shaders_(shaders),
-      trilinear_(gl::makeSampler(GL_LINEAR_MIPMAP_LINEAR, GL_REPEAT, "base colour")),
-      linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "linear")),
-      shadow_(gl::makeShadowSampler("shadow")) {
+      trilinear_(gl::makeSampler(GL_LINEAR_MIPMAP_LINEAR, GL_REPEAT, "base colour")) {
     const std::uint8_t white[4] = {255, 255, 255, 255};
     white_.ensure(1, 1, GL_RGBA8, "white");
     glTextureSubImage2D(white_.get(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, white);
 }
 
 void CameraReceivers::setFrame(const Inputs& in, GLuint program) const {
-    const Lighting& lighting = in.lighting;
     const gl::Uniforms uniforms(program);
-    const float perUnit = 1.0f / radianceUnit(lighting);
-    uniforms.set("u_worldToClip", in.view.worldToClip())
-        .set("u_eye", in.view.perspective ? glm::vec4(in.view.position(), 1.0f) : glm::vec4(-in.view.forward(), 0.0f))
-        .set("u_environment", lighting.environmentRadiance * perUnit)
-        .set("u_keyColour", lighting.keyRgb);
-    setView(uniforms, "u_shadowView", lighting.shadowView);
-    setView(uniforms, "u_mapView", lighting.mapView);
-    uniforms.set("u_outerScale", lighting.mapView.halfExtent / lighting.outerView.halfExtent);
-    uniforms.set("u_shadowDepth", kShadow).set("u_map", kMap).set("u_outerMap", kOuterMap).set("u_cookie", kCookie);
-    uniforms.set("u_baseColorTexture", kBaseColor);
-
-    const std::size_t count = std::min(lighting.lights.size(), kMaxLights);
-    for (std::size_t i = 0; i < count; ++i) {
-        const glm::vec3 rgb = i == 0 ? lighting.keyRgb : lighting.rgb[i];
-        setLight(uniforms, "u_lights[" + std::to_string(i) + "]", lighting.lights[i], rgb * irradianceScale(lighting));
-    }
-    if (count == 0) uniforms.set("u_lights[0].rgb", glm::vec3(0.0f));
-    uniforms.set("u_lightCount", static_cast<int>(count));
-    const bool hasCookie = count > 0 && lighting.lights[0].cookie >= 0;
-    uniforms.set("u_hasCookie", hasCookie);
-    if (hasCookie) setView(uniforms, "u_cookieView", cookieView(lighting.lights[0]));
+    uniforms.set("u_worldToClip", in.view.worldToClip()).set("u_baseColorTexture", kBaseColor);
+    shading_.bind(uniforms, kShading, in.scene, in.lighting, in.view);
 }
 
 void CameraReceivers::setMaterial(const Inputs& in, const scene::Material& material, GLuint program) const {
@@ -103,28 +67,19 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
 
-    // What every variant shares: images and samplers.
-    const bool map = lighting.hasMap, hasCookie = !lighting.lights.empty() && lighting.lights[0].cookie >= 0;
-    if (lighting.hasShadow) glBindTextureUnit(kShadow, lighting.shadowDepth);
-    if (map) {
-        glBindTextureUnit(kMap, lighting.map);
-        glBindTextureUnit(kOuterMap, lighting.outerMap);
-    }
-    if (hasCookie) glBindTextureUnit(kCookie, in.scene.texture(lighting.lights[0].cookie));
+    const bool map = lighting.hasMap;
     glBindSampler(kBaseColor, trilinear_.get());
-    glBindSampler(kShadow, shadow_.get());
-    for (const int unit : {kMap, kOuterMap, kCookie}) glBindSampler(unit, linear_.get());
 
     // One draw per receiver; a variant's frame uniforms are set when it is first used.
     in.scene.bind();
     std::vector<GLuint> ready;
     for (const scene::Object& object : in.scene.geometry().objects) {
         const scene::Material& material = in.materials[static_cast<std::size_t>(object.material)];
-        if (material.caster) continue;
+        if (material.caster || (in.mirrorsApart && material.mirror)) continue;
         const bool shadow = lighting.hasShadow && (inView(object, lighting.shadowView) || in.forced.has(Omission::ShadowLookup));
         const bool lit = map && (inView(object, lighting.outerView) || in.forced.has(Omission::MapLookup));
         const bool outer = lighting.hasOuterMap || in.forced.has(Omission::OuterMap);
-        const bool full = hasCookie || lighting.lights.size() > 1 || glossy(material) || in.forced.has(Omission::Gloss);
+        const bool full = hasCookie(lighting) || lighting.lights.size() > 1 || glossy(material) || in.forced.has(Omission::Gloss);
         const bool texture = material.baseColorTexture >= 0 || in.forced.has(Omission::Textures);
         const GLuint program = shaders_.program(in.asPublished ? "thesis_receivers" : "camera_receivers",
                                                flags(shadow, !lit ? kNoMap : outer ? kBothMaps : kInnerMap, texture, full));
@@ -137,7 +92,8 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
         in.scene.draw(object);
     }
     glDisable(GL_DEPTH_TEST);
-    for (const int unit : {kBaseColor, kShadow, kMap, kOuterMap, kCookie}) glBindSampler(unit, 0);
+    glBindSampler(kBaseColor, 0);
+    ReceiverShading::unbind(kShading);
 }
 
 void CameraReceivers::warmUp() {

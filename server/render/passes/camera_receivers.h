@@ -8,6 +8,7 @@
 #include "render/gpu_scene.h"
 #include "render/lighting.h"
 #include "render/omission.h"
+#include "render/receiver_shading.h"
 #include "render/view.h"
 #include "scene/scene.h"
 
@@ -28,7 +29,8 @@ class CameraReceivers {
         const View& view;                            // the camera's, perspective or parallel
         int width, height;                           // pixels
         bool asPublished = false;                    // thesis_receivers: the thesis's shading with its gains
-        Omissions forced;                            // that are done all the same
+        Omissions forced{};                          // that are done all the same
+        bool mirrorsApart = false;                   // mirrors are left out, too
     };
     struct Outputs {
         gl::Texture& color;  // RGBA16F, linear BT.709 radiance over radianceUnit(); background: the environment. a = 1
@@ -47,7 +49,8 @@ class CameraReceivers {
     void setMaterial(const Inputs& in, const scene::Material& material, GLuint program) const;
 
     gl::ShaderLibrary& shaders_;
-    gl::Sampler trilinear_, linear_, shadow_;
+    ReceiverShading shading_;
+    gl::Sampler trilinear_;
     gl::Texture white_;                              // where a texture is forced on what has none
 };
 

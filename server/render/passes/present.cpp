@@ -7,7 +7,9 @@ namespace caustream::render {
 namespace {
 constexpr int kModes = 5;
 
-std::vector<gl::Flag> flags(int mode, bool downsample) { return {{"MODE", mode}, {"DOWNSAMPLE", downsample}}; }
+std::vector<gl::Flag> flags(int mode, bool downsample, bool fade = false) {
+    return {{"MODE", mode}, {"DOWNSAMPLE", downsample}, {"FADE", fade}};
+}
 }  // namespace
 
 void Present::run(const Inputs& in, int width, int height, GLenum format, const Outputs& out) {
@@ -15,13 +17,16 @@ void Present::run(const Inputs& in, int width, int height, GLenum format, const 
     const gl::Framebuffer target = gl::makeFramebuffer("present", {out.image.get()});
     glBindFramebuffer(GL_FRAMEBUFFER, target.get());
     glViewport(0, 0, width, height);
-    const GLuint program = shaders_.program("present", flags(static_cast<int>(in.mode), in.downsample));
+    const GLuint program = shaders_.program("present", flags(static_cast<int>(in.mode), in.downsample, in.before != 0));
     glUseProgram(program);
     gl::Uniforms(program)
         .set("u_image", 0)
         .set("u_scale", in.scale)
         .set("u_size", glm::ivec2(width, height))
-        .set("u_depthImage", in.depthImage);
+        .set("u_depthImage", in.depthImage)
+        .set("u_before", 1)
+        .set("u_share", in.share);
+    if (in.before) glBindTextureUnit(1, in.before);
     glBindTextureUnit(0, in.image);
     glBindVertexArray(vertexArray_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -32,6 +37,7 @@ void Present::warmUp() {
         shaders_.program("present", flags(mode, false));
         shaders_.program("present", flags(mode, true));
     }
+    shaders_.program("present", flags(int(Mode::Picture), false, true));
 }
 
 }  // namespace caustream::render

@@ -22,6 +22,8 @@ class Present {
         Mode mode = Mode::Picture;
         float scale = 1.0f;        // Picture: 2^EV; Linear: unit of the output; Map: multiplies first
         bool depthImage = false;   // Layer: the layer is in red (depth or R32F), not in w
+        GLuint before = 0;         // Picture: the image that `image` takes the place of, or none
+        float share = 1.0f;        // of `image` after the tone curve, the rest is `before`
         bool downsample = false;   // the image is twice the output's size a side: 4x anti-aliasing
     };
     struct Outputs {
