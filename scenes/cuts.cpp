@@ -66,7 +66,7 @@ std::vector<glm::dvec4> emeraldPlanes() {
     std::vector<glm::dvec4> planes;
     for (int i = 0; i < 8; ++i) {
         const glm::dvec3 out = cylindrical(1.0, 45.0 * i, 0.0);
-        const double distance = i % 2 == 1 ? kCorner : i % 4 == 0 ? kLength : kWidth;
+        const double distance = i % 2 == 1 ? kCorner : i % 4 == 2 ? kLength : kWidth;
         planes.emplace_back(out, distance);
         const auto addSteps = [&](const std::array<Step, 3>& steps, double up) {
             double inset = 0.0, y = up * kGirdle;

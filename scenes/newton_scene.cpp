@@ -1,6 +1,6 @@
 // Newton's second prism (Opticks, 1704, book one, proposition II, experiment 6), laid flat on a table as schools do: a
 // sheet of white light skims the table and draws its own way on it. The first prism spreads it, a board with a slit lets
-// one colour through, and the second prism bends that colour as much again and spreads it no further.
+// one colour through, and the second prism bends that colour back and spreads it no further.
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -32,35 +32,33 @@ struct Way {   // of green light along the table
     glm::dvec3 after(double m) const { return point + m * level(heading); }
 };
 
-// An upright prism that the way meets in the middle of a face, near minimum deviation; it turns clockwise there.
-Way addPrism(GlbWriter& glb, const std::string& name, int flint, const Way& in) {
+// An upright prism that the way meets in the middle of a face, near minimum deviation. `turn` 1: clockwise seen from above,
+// -1: the other way.
+Way addPrism(GlbWriter& glb, const std::string& name, int flint, const Way& in, double turn) {
     constexpr double kIncidenceDeg = 61.5;
     const double incidence = radians(kIncidenceDeg), refracted = std::asin(std::sin(incidence) / kIndex);
-    const double entryNormal = in.heading + std::numbers::pi - incidence, inradius = kSide / (2.0 * std::sqrt(3.0));
+    const double entryNormal = in.heading + std::numbers::pi - turn * incidence, inradius = kSide / (2.0 * std::sqrt(3.0));
     const glm::dvec3 centre = in.point - inradius * level(entryNormal);
     std::vector<glm::dvec4> planes{{0, 1, 0, kPrismM}, {0, -1, 0, -0.0005}};   // not in the table's plane
     for (int face = 0; face < 3; ++face) {
-        const glm::dvec3 normal = level(entryNormal - radians(120.0 * face));
+        const glm::dvec3 normal = level(entryNormal - turn * radians(120.0 * face));
         planes.emplace_back(normal, inradius + glm::dot(normal, centre));
     }
     glb.addMesh(name, convexPolyhedron(planes), flint);
 
-    const double within = in.heading - (incidence - refracted);
-    const glm::dvec3 exitNormal = level(entryNormal - radians(120.0)), direction = level(within);
+    const double within = in.heading - turn * (incidence - refracted);
+    const glm::dvec3 exitNormal = level(entryNormal - turn * radians(120.0)), direction = level(within);
     const double chord = (inradius - glm::dot(exitNormal, in.point - centre)) / glm::dot(exitNormal, direction);
     const double exit = std::asin(kIndex * std::sin(radians(60.0) - refracted));
-    return {in.point + chord * direction, in.heading - (incidence + exit - radians(60.0))};
+    return {in.point + chord * direction, in.heading - turn * (incidence + exit - radians(60.0))};
 }
 
-// Two boards across the way, and what is open between them.
-void addSlit(GlbWriter& glb, int material, const Way& at) {
-    constexpr float kOpenM = 0.007f, kWideM = 0.075f, kHalfThickM = 0.0015f, kHighM = 0.085f;
-    for (const float side : {-1.0f, 1.0f}) {
-        const float near = side * 0.5f * kOpenM, far = side * (0.5f * kOpenM + kWideM);
-        Mesh board = box({-kHalfThickM, 0.0f, std::min(near, far)}, {kHalfThickM, kHighM, std::max(near, far)});
-        transform(board, glm::rotate(glm::translate(glm::mat4(1.0f), glm::vec3(at.point)), static_cast<float>(at.heading), {0.0f, 1.0f, 0.0f}));
-        glb.addMesh(side < 0.0f ? "left board" : "right board", board, material);
-    }
+// Upright, across a way, from `leftM` to `rightM` of it.
+void addBoard(GlbWriter& glb, const std::string& name, int material, const Way& at, double leftM, double rightM) {
+    constexpr float kHalfThickM = 0.0015f, kHighM = 0.085f;
+    Mesh board = box({-kHalfThickM, 0.0f, static_cast<float>(leftM)}, {kHalfThickM, kHighM, static_cast<float>(rightM)});
+    transform(board, glm::rotate(glm::translate(glm::mat4(1.0f), glm::vec3(at.point)), static_cast<float>(at.heading), {0.0f, 1.0f, 0.0f}));
+    glb.addMesh(name, board, material);
 }
 
 // White on black: an upright slit.
@@ -79,21 +77,28 @@ std::vector<std::uint8_t> makeNewton() {
         glassMaterial("flint", 1.7847,
                       {{"sellmeier", {1.73848403, 0.311168974, 1.17490871, 0.0136068604, 0.0615960463, 121.922711}}}));
     const int white = glb.addMaterial(matteMaterial("table", {0.85f, 0.85f, 0.85f}));
-    const int card = glb.addMaterial(matteMaterial("board", {0.55f, 0.55f, 0.58f}));
+    const int grey = glb.addMaterial(matteMaterial("board", {0.55f, 0.55f, 0.58f})), black = glb.addMaterial(matteMaterial("card", {0.03f, 0.03f, 0.03f}));
 
-    const Way in{{-0.10, 0.0, -0.12}, 0.0};
-    const Way spread = addPrism(glb, "first prism", flint, in);
-    addSlit(glb, card, {spread.after(0.24), spread.heading});
-    addPrism(glb, "second prism", flint, {spread.after(0.31), spread.heading});
+    const Way in{{-0.16, 0.0, -0.14}, 0.0};
+    const Way spread = addPrism(glb, "first prism", flint, in, 1.0);
+    constexpr double kHalfOpenM = 0.0035, kBoardM = 0.05;
+    const Way slitAt{spread.after(0.16), spread.heading}, one{spread.after(0.34), spread.heading};
+    addBoard(glb, "left board", grey, slitAt, -kHalfOpenM - kBoardM, -kHalfOpenM);
+    addBoard(glb, "right board", grey, slitAt, kHalfOpenM, kHalfOpenM + kBoardM);
+    addPrism(glb, "second prism", flint, one, -1.0);
+    // Cards that catch what the prisms' faces throw back.
+    addBoard(glb, "card behind", black, {in.point + glm::dvec3(0.06, 0.0, -0.07), radians(57.0)}, -0.05, 0.05);
+    addBoard(glb, "card before", black, {in.point + glm::dvec3(-0.10, 0.0, 0.01), 0.0}, 0.0, 0.05);
+    addBoard(glb, "card beside", black, {one.point + glm::dvec3(-0.05, 0.0, 0.07), radians(236.0)}, -0.04, 0.04);
     glb.addMesh("table", quad({-1.0f, 0, 1.0f}, {1.0f, 0, 1.0f}, {1.0f, 0, -0.6f}, {-1.0f, 0, -0.6f}), white);
 
-    nlohmann::json slit = spotLight("key", 60.0, 2.6, 2.6);
+    nlohmann::json slit = spotLight("key", 60.0, 1.5, 1.5);
     slit["extras"]["caustream"]["cookie"] = glb.addTexture(slitCookie());
-    constexpr double kLightM = 1.2, kAimM = 0.02, kDownDeg = 4.5;
+    constexpr double kLightM = 1.5, kAimM = 0.03, kDownDeg = 4.0;
     const glm::dvec3 aim = in.point + glm::dvec3(0.0, kAimM, 0.0);
     glb.addLight(slit, aim + kLightM * glm::dvec3(-1.0, std::tan(radians(kDownDeg)), 0.0), aim);
-    glb.addCamera("camera", {-0.05, 0.75, 0.95}, {-0.12, 0.0, 0.17}, 38.0);
-    glb.setSceneExtras({{"environment", {0.02, 0.02, 0.022}}, {"exposure_bias_ev", 3.0}});
+    glb.addCamera("camera", {0.08, 0.66, 0.46}, {0.06, 0.0, 0.025}, 40.0);
+    glb.setSceneExtras({{"environment", {0.0012, 0.0012, 0.0014}}, {"exposure_bias_ev", 4.5}});
     return glb.finish();
 }
 

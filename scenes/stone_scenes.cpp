@@ -39,9 +39,9 @@ std::vector<std::uint8_t> makeBrilliant() {
     // It lies on a pavilion main, as a loose stone does, the crown towards the light.
     const glm::vec3 at(0.18f, 0.0f, -0.1f);
     glb.addMesh("brilliant", placed(brilliantPlanes(), 0.12, 40.75, 210.0, at), diamond);
-    glb.addLight(spotLight("key", 60.0, 6.5, 8.0), {-0.75, 1.15, 0.75}, {0.15, 0.1, -0.08});
+    glb.addLight(spotLight("key", 60.0, 5.2, 6.2), {-0.79, 0.89, 0.72}, {0.18, 0.09, -0.1});
     glb.addCamera("camera", {-0.05, 0.62, 1.15}, {-0.08, 0.06, 0.0}, 36.0);
-    glb.setSceneExtras({{"environment", {0.035, 0.035, 0.04}}, {"exposure_bias_ev", 1.5}});
+    glb.setSceneExtras({{"environment", {0.012, 0.012, 0.014}}, {"exposure_bias_ev", 2.2}});
     return glb.finish();
 }
 
@@ -51,13 +51,14 @@ std::vector<std::uint8_t> makeEmerald() {
     // Beryl: n_D 1.58 and n_F - n_C .009 (Anderson 1980, Gem Testing), so an Abbe number of 64.
     nlohmann::json beryl = glassMaterial("emerald", 1.58, nullptr);
     beryl["extensions"]["KHR_materials_dispersion"]["dispersion"] = 20.0 / 64.0;
-    beryl["extensions"]["KHR_materials_volume"]["attenuationDistance"] = 0.22;
+    beryl["extensions"]["KHR_materials_volume"]["attenuationDistance"] = 0.4;
     beryl["extensions"]["KHR_materials_volume"]["attenuationColor"] = {0.10, 0.72, 0.34};
     const int emerald = glb.addMaterial(beryl);
-    glb.addMesh("emerald", placed(emeraldPlanes(), 0.14, 0.0, 25.0, {0.02f, 0.0f, -0.05f}), emerald);
-    glb.addLight(spotLight("key", 60.0, 10.0, 14.0), {0.75, 1.05, -0.5}, {0.02, 0.08, -0.05});
-    glb.addCamera("camera", {-0.05, 0.62, 1.0}, {-0.05, 0.05, 0.0}, 34.0);
-    glb.setSceneExtras({{"environment", {0.06, 0.06, 0.065}}, {"exposure_bias_ev", 0.4}});
+    // On the middle step of a long side.
+    glb.addMesh("emerald", placed(emeraldPlanes(), 0.16, 47.0, 212.0, {0.16f, 0.0f, -0.08f}), emerald);
+    glb.addLight(spotLight("key", 60.0, 7.5, 9.0), {-0.68, 0.86, 0.55}, {0.16, 0.09, -0.08});
+    glb.addCamera("camera", {-0.05, 0.60, 1.05}, {-0.06, 0.06, 0.0}, 35.0);
+    glb.setSceneExtras({{"environment", {0.02, 0.022, 0.022}}, {"exposure_bias_ev", 1.7}});
     return glb.finish();
 }
 
