@@ -25,13 +25,13 @@ FILE.json tells the rest: stream.info, the frame's header, statistics, the map's
   lights.NAME.intensity=["cd",100]  camera.eye=[x,y,z]  camera.target=[x,y,z]  camera.fov_y_deg=40
   materials.NAME.dispersion=["cauchy",1.458,0.00354]  transport.map_size=1024  transport.photon_grid=512
   transport.wavelengths="continuous" (the default) or 1 to 64 exact ones  transport.gap_fill=true
-  transport.mode="auto" (the default), "traced", "refined" or "thesis"  transport.bounces=8 (0 to 32, for what is traced)
+  transport.mode=auto (the default), traced, refined or thesis  transport.bounces=8 (0 to 32, for what is traced)
   transport.exact_receivers=true  transport.target_error=0.01
 
 One still is one frame: quick, and of a traced scene as good as one frame's photons. --converge waits until the server has
 traced enough of them, that is until the map's estimated error is under transport.target_error (1% unless it is set), and
-fetches the picture then. Half the error takes two to four times as long. What is not traced (mode "refined" or "thesis",
-or no light on any glass) has nothing to converge and comes at once. --timeout counts for the whole of it.
+fetches the picture then: seconds on a GPU, minutes without one. Half the error takes two to four times as long. What is not
+traced (mode "refined" or "thesis", or no light on any glass) has nothing to converge and comes at once.
 
 scripts/run.sh --shot FILE starts a server, takes the picture and stops the server.)";
 

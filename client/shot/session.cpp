@@ -96,18 +96,21 @@ Session::Done Session::converge(const std::function<void(const protocol::Converg
     connection_.startStream(true);
     std::uint32_t told = 0;
     bool converged = false;
-    const auto done = waitUntil("the picture to converge", [&] {
-        if (const auto frame = connection_.takeFrame()) {
-            connection_.acknowledge(*frame, 0);
-            converged |= (frame->header.flags & protocol::kFrameConverged) != 0;
-        }
-        if (!stats_) return false;
-        if (stats_->convergence && stats_->frameSeq != told) {
-            told = stats_->frameSeq;
-            progress(*stats_->convergence);
-        }
-        return converged || !stats_->convergence;
-    });
+    Done done;
+    // Each frame is waited for, not all of them: as long as there is progress, there is no hurry.
+    while (done && !converged && (!stats_ || stats_->convergence)) {
+        done = waitUntil("the picture to converge", [&] {
+            const auto frame = connection_.takeFrame();
+            if (frame) {
+                connection_.acknowledge(*frame, 0);
+                converged |= (frame->header.flags & protocol::kFrameConverged) != 0;
+            }
+            const bool news = stats_ && stats_->frameSeq != told;
+            if (news && stats_->convergence) progress(*stats_->convergence);
+            if (news) told = stats_->frameSeq;
+            return frame || news;
+        });
+    }
     connection_.pauseStream();
     return done;
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "client/connection/image_file.h"
 
@@ -91,6 +92,7 @@ void App::takeNews(double nowS) {
             const protocol::Json document = connection_.document();
             if (document.value("scene", protocol::Json{}) == state->state.value("scene", protocol::Json{}))
                 state->state.merge_patch(document);
+            applySettings(state->state, nowS);
         }
         if (std::holds_alternative<protocol::ErrorMessage>(event)) savingSinceS_ = -1.0;
         const bool another = model_.take(event, nowS);
@@ -108,6 +110,18 @@ void App::takeNews(double nowS) {
     }
     while (!frameTimesS_.empty() && nowS - frameTimesS_.front() > 1.0) frameTimesS_.pop_front();
     model_.frameRate = static_cast<double>(frameTimesS_.size());
+}
+
+// The command line's, once, to the scene that it asked for; `resolved` is that scene's document and takes them, too.
+void App::applySettings(protocol::Json& resolved, double nowS) {
+    const protocol::Json scene = resolved.value("scene", protocol::Json::array({"", ""}));
+    const bool wanted = options_.file.empty() ? options_.scene.empty() || scene[1] == options_.scene : scene[0] == "asset";
+    if (!wanted || options_.settings.empty()) return;
+    const auto settings = std::exchange(options_.settings, {});
+    const auto patch = protocol::settingsPatch(resolved, settings);
+    const auto sent = patch ? connection_.update(*patch) : tl::make_unexpected(patch.error());
+    if (!sent) return model_.say(true, "--set " + sent.error().field + ": " + sent.error().message, nowS);
+    resolved.merge_patch(*patch);
 }
 
 void App::handleMouse(const Rectangle& shown) {

@@ -22,6 +22,7 @@ class App {
     enum class Drag { None, Orbit, Pan, Light };
 
     void takeNews(double nowS);
+    void applySettings(protocol::Json& resolved, double nowS);
     void handleMouse(const Rectangle& shown);
     void handleKey(int key);
     void askForSize(int width, int height, double nowS);

@@ -10,6 +10,7 @@ constexpr const char* kHelp = R"(Examples:
   caustream-view
   caustream-view --url http://192.168.1.20:9720 --scene prism
   caustream-view glass.glb
+  caustream-view --scene gem --set transport.mode=refined --set 'camera.exposure=["ev",9]'
 
 Mouse: left drag orbits, right or middle drag pans, the wheel zooms; Shift + left drag moves the light.
 Keys:  S saves the picture as PNG, L swaps what the left button drags, R resets the camera, Tab hides the panel, Esc quits.
@@ -24,12 +25,17 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
         return tl::make_unexpected(ParseEnd{1, "caustream-view: " + why + "; caustream-view --help shows how\n"});
     };
     Options options;
-    std::string url = connection::kDefaultUrl, size;
+    std::string url = connection::kDefaultUrl;
+    std::vector<std::string> settings;
     CLI::App app("A window on a caustream server.", "caustream-view");
     app.footer(kHelp);
     app.add_option("FILE", options.file, "a GLB file to send and show");
     app.add_option("--url", url, "the server, as its ready line says")->capture_default_str();
     app.add_option("--scene", options.scene, "a scene of the server");
+    app.add_option("--set", settings, "PATH=VALUE: sets a value of the state document, as caustream-shot's; repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
     app.add_option("--save-folder", options.saveFolder, "where S puts its pictures")->capture_default_str();
     app.add_option("--width", options.width, "of the window")->check(CLI::Range(480, 7680))->capture_default_str();
     app.add_option("--height", options.height, "of the window")->check(CLI::Range(320, 4320))->capture_default_str();
@@ -46,6 +52,11 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     options.address = std::move(*address);
     if (!options.file.empty() && !std::filesystem::is_regular_file(options.file))
         return wrong("cannot read " + options.file);
+    for (const auto& text : settings) {
+        auto setting = protocol::parseSetting(text);
+        if (!setting) return wrong(setting.error());
+        options.settings.push_back(std::move(*setting));
+    }
     return options;
 }
 

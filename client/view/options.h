@@ -2,8 +2,10 @@
 #pragma once
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "client/connection/address.h"
+#include "protocol/patch.h"
 
 namespace caustream::view {
 
@@ -11,6 +13,7 @@ struct Options {
     connection::Address address;
     std::string file;   // a GLB to show; empty: a scene of the server
     std::string scene;  // empty: the server's own choice
+    std::vector<protocol::Setting> settings;  // of the first scene
     std::string token;
     std::string saveFolder = ".";
     int width = 1280, height = 800;  // of the window

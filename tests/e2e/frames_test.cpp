@@ -13,8 +13,8 @@
 namespace caustream::e2e {
 namespace {
 
-// Small pictures and few photons: the tests look at the protocol, not at the light.
-const Json kSmall = {{"transport", {{"photon_grid", 64}, {"map_size", 64}}},
+// Small pictures and few photons, in one frame: the tests look at the protocol, not at the light.
+const Json kSmall = {{"transport", {{"mode", "refined"}, {"photon_grid", 64}, {"map_size", 64}}},
                      {"stream", {{"width", 96}, {"height", 64}, {"max_fps", 240}}}};
 
 Json moved(double x) { return {{"lights", {{"key", {{"position", {x, 4.0, 0.5}}, {"direction", {-x, -4.0, -0.5}}}}}}}; }

@@ -254,6 +254,8 @@ std::optional<Picture> RawClient::frame(int ms) {
             const Json answer = Json::parse(message.text);
             if (answer.value("op", "") == "stream.info") {
                 infos.push_back(answer);
+            } else if (answer.value("op", "") == "stats") {
+                stats.push_back(answer);
             } else if (answer.value("op", "") == "ok") {
                 lastReply = answer;
             } else if (answer.value("op", "") == "error") {
@@ -272,8 +274,8 @@ std::optional<Picture> RawClient::frame(int ms) {
     return std::nullopt;
 }
 
-Picture RawClient::requestFrame(bool still) {
-    json({{"op", "frame.request"}, {"id", nextId_++}, {"still", still}});
+Picture RawClient::requestFrame(bool still, bool converge) {
+    json({{"op", "frame.request"}, {"id", nextId_++}, {"still", still}, {"converge", converge}});
     auto picture = frame();
     if (!picture) {
         throw std::runtime_error("no frame");

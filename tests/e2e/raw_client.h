@@ -60,12 +60,12 @@ class RawClient {
     // Waits for a text of this op; nothing within `ms`.
     std::optional<Json> textOf(std::string_view op, int ms = 60'000);
 
-    // Waits for a frame; texts on the way go to `infos` when they are stream.info.
+    // Waits for a frame; of the texts on the way, stream.info goes to `infos` and statistics to `stats`.
     std::optional<Picture> frame(int ms = 60'000);
-    Picture requestFrame(bool still = false);
+    Picture requestFrame(bool still = false, bool converge = false);
     void ack(std::uint32_t seq) { json({{"op", "ack"}, {"seq", seq}, {"recv_us", 1}, {"decode_us", 1}, {"paint_us", 1}}); }
 
-    std::vector<Json> infos;
+    std::vector<Json> infos, stats;
     Json lastReply;  // of requestFrame
 
    private:
