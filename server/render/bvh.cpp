@@ -17,8 +17,8 @@ namespace caustream::render {
 namespace {
 
 constexpr unsigned kMostDepth = 96;     // nothing of ours is that deep; Embree gives up where many triangles share a centre
-constexpr unsigned kMostInLeaf = 4;
-constexpr float kIntersectionCost = 2.0f;   // a triangle, in boxes (measured in the shader)
+constexpr unsigned kMostInLeaf = 1u << Bvh::kLeafBits;
+constexpr float kIntersectionCost = 0.5f;   // of a triangle, in boxes: fewer nodes are worth more triangles (docs/pipeline.md)
 constexpr float kCells = 65533.0f;      // of 2^16, less the one that boxes are wider by at either side
 
 struct Node {
