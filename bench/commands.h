@@ -12,6 +12,7 @@ void addFrame(CLI::App& app);         // render times in this process
 void addOmissions(CLI::App& app);     // what leaving out saves
 void addPeers(CLI::App& app);        // POV-Ray beside traced transport
 void addReference(CLI::App& app);     // exact maps from the CPU
+void addSegments(CLI::App& app);    // what a ray segment of traced transport costs
 void addStability(CLI::App& app);     // stiff, extreme and random scenes
 void addStream(CLI::App& app);        // what the socket adds
 

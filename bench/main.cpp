@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     addOmissions(app);
     addPeers(app);
     addReference(app);
+    addSegments(app);
     addStability(app);
     addStream(app);
     try {
