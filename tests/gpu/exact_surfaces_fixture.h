@@ -81,7 +81,7 @@ class ExactSurfacesTest : public CameraPass {
                                    const std::vector<glm::vec4>& inputs, int texelsEach, bool receivers = false) {
         const ShaderFolder folder("caustream-exact-surfaces");
         folder.write("passes/walk.comp", "#include \"common/surfaces.glsl\"\n"
-                     "layout(local_size_x = 8) in;\n"
+                     "layout(local_size_x = 64) in;\n"
                      "layout(std430, binding = 0) readonly buffer In { vec4 inputs[]; };\n"
                      "layout(std430, binding = 1) writeonly buffer Out { vec4 outputs[]; };\n"
                      "uniform int u_count;\n" + functions +
@@ -98,7 +98,7 @@ class ExactSurfacesTest : public CameraPass {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.get());
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.get());
         glUseProgram(program);
-        glDispatchCompute(static_cast<GLuint>((count + 7) / 8), 1, 1);
+        glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);   // out -> read-back
         std::vector<glm::vec4> values(static_cast<std::size_t>(texelsEach) * count);
         glGetNamedBufferSubData(out.get(), 0, static_cast<GLsizeiptr>(out.bytes()), values.data());
