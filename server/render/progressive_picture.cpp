@@ -61,7 +61,7 @@ void ProgressivePicture::move(const std::string& key, const gl::Texture& color) 
     } else {
         const Picture& rest = pictures_.front();
         if (!sameScene(key, rest.key)) gain_ = 1.0;
-        else if (rest.fades) gain_ *= gainAfter(rest);
+        else if (rest.fades) gain_ = gainAfter(rest);
     }
     atRest_ = false;
     moving_ = &color;
@@ -120,12 +120,20 @@ void ProgressivePicture::fade(Picture& picture, float scale) {
 
 // What the moving picture's exposure has to be multiplied by to be as bright as what was shown at rest.
 double ProgressivePicture::gainAfter(const Picture& picture) {
-    const double wanted = std::lerp(luminance_.of(picture.before, picture.scale), luminance_.of(picture.mean, picture.scale), picture.share);
-    double gain = 1.0;
-    for (int i = 0; i < 4; ++i) {   // a tone curve answers by less than the exposure changes
+    const auto scale = static_cast<float>(picture.scale * gain_);
+    const double wanted = std::lerp(luminance_.of(picture.before, scale), luminance_.of(picture.mean, scale), picture.share);
+    if (wanted <= 0.0) return 1.0;
+    // A secant in logarithms: a tone curve answers by less than the exposure changes.
+    double gain = 1.0, slope = 1.0, lastGain = 0.0, lastOff = 0.0;
+    for (int i = 0; i < 6; ++i) {
         const double now = luminance_.of(picture.before, static_cast<float>(picture.scale * gain));
-        if (now <= 0.0 || wanted <= 0.0) return 1.0;
-        gain = std::clamp(gain * wanted / now, 0.25, 4.0);
+        if (now <= 0.0) return 1.0;
+        const double off = std::log(wanted / now);
+        if (std::abs(off) < 1e-3) break;
+        if (i > 0 && std::abs(lastOff - off) > 1e-6) slope = std::clamp((lastOff - off) / std::log(gain / lastGain), 0.1, 2.0);
+        lastGain = gain, lastOff = off;
+        gain = std::clamp(gain * std::exp(off / slope), 0.25, 4.0);
+        if (gain == lastGain) break;
     }
     return gain;
 }
