@@ -96,8 +96,8 @@ std::vector<std::uint8_t> makeJewel() {
     glb.addMesh("table", quad({-1.2f, 0, 0.9f}, {1.2f, 0, 0.9f}, {1.2f, 0, -0.7f}, {-1.2f, 0, -0.7f}), table);
     glb.addMesh("wall", quad({-2.0f, -0.6f, -0.8f}, {2.0f, -0.6f, -0.8f}, {2.0f, 1.2f, -0.8f}, {-2.0f, 1.2f, -0.8f}), wall);
     glb.addLight(spotLight("key", 40.0, 11.0, 16.0), {-1.05, 0.52, -0.10}, {-0.045, 0.03, 0.05});
-    glb.addCamera("camera", {-0.02, 0.47, 0.52}, {-0.015, 0.02, 0.015}, 34.0);
-    glb.setSceneExtras({{"environment", {0.10, 0.10, 0.11}}, {"exposure_bias_ev", 0.2}});
+    glb.addCamera("camera", {-0.03, 0.44, 0.50}, {-0.005, 0.015, 0.01}, 31.0);
+    glb.setSceneExtras({{"environment", {0.10, 0.10, 0.11}}, {"exposure_bias_ev", 0.6}});
     return glb.finish();
 }
 

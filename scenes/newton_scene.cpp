@@ -98,7 +98,7 @@ std::vector<std::uint8_t> makeNewton() {
     const glm::dvec3 aim = in.point + glm::dvec3(0.0, kAimM, 0.0);
     glb.addLight(slit, aim + kLightM * glm::dvec3(-1.0, std::tan(radians(kDownDeg)), 0.0), aim);
     glb.addCamera("camera", {0.08, 0.66, 0.46}, {0.06, 0.0, 0.025}, 40.0);
-    glb.setSceneExtras({{"environment", {0.0012, 0.0012, 0.0014}}, {"exposure_bias_ev", 4.5}});
+    glb.setSceneExtras({{"environment", {0.0007, 0.0007, 0.0008}}, {"exposure_bias_ev", 4.5}});
     return glb.finish();
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 void addTable(GlbWriter& glb) {
     const int table = glb.addMaterial(matteMaterial("table", {0.55f, 0.54f, 0.52f}));
-    const int wall = glb.addMaterial(matteMaterial("wall", {0.36f, 0.36f, 0.40f}));
+    const int wall = glb.addMaterial(matteMaterial("wall", {0.46f, 0.46f, 0.50f}));
     glb.addMesh("table", quad({-1.6f, 0, 1.1f}, {1.6f, 0, 1.1f}, {1.6f, 0, -0.8f}, {-1.6f, 0, -0.8f}), table);
     glb.addMesh("wall", quad({-1.6f, 0, -0.8f}, {1.6f, 0, -0.8f}, {1.6f, 1.4f, -0.8f}, {-1.6f, 1.4f, -0.8f}), wall);
 }
@@ -57,7 +57,7 @@ std::vector<std::uint8_t> makeEmerald() {
     // On the middle step of a long side.
     glb.addMesh("emerald", placed(emeraldPlanes(), 0.16, 47.0, 212.0, {0.16f, 0.0f, -0.08f}), emerald);
     glb.addLight(spotLight("key", 60.0, 7.5, 9.0), {-0.68, 0.86, 0.55}, {0.16, 0.09, -0.08});
-    glb.addCamera("camera", {-0.05, 0.60, 1.05}, {-0.06, 0.06, 0.0}, 35.0);
+    glb.addCamera("camera", {0.00, 0.58, 0.98}, {0.07, 0.09, -0.1}, 36.0);
     glb.setSceneExtras({{"environment", {0.02, 0.022, 0.022}}, {"exposure_bias_ev", 1.7}});
     return glb.finish();
 }
