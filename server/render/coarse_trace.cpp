@@ -1,87 +1,13 @@
-#include "render/coarse_trace.h"
-
-#include <embree3/rtcore.h>
-
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/trigonometric.hpp>
-#include <limits>
-#include <optional>
 
 #include "error.h"
 #include "optics/fresnel.h"
+#include "render/coarse_trace_impl.h"
 
 namespace caustream::render {
-
-namespace {
-
-struct Hit {
-    float distance = 0.0f;
-    glm::vec3 normal{0.0f};   // interpolated, unit
-};
-
-template <auto Release>
-struct Releaser {
-    template <class T>
-    void operator()(T* pointer) const {
-        Release(pointer);
-    }
-};
-using Device = std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>>;
-using Scene = std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>>;
-
-}  // namespace
-
-struct CoarseTrace::Impl {
-    std::shared_ptr<const scene::Geometry> geometry;
-    Device device{rtcNewDevice("threads=1")};
-    Scene receivers;
-    std::vector<Scene> casters;   // by object; null for receivers
-
-    void attach(RTCScene scene, const scene::Object& object) const {
-        RTCGeometry triangles = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry->vertices.data(),
-                                   0, sizeof(scene::Vertex), geometry->vertices.size());
-        rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry->indices.data(),
-                                   object.firstIndex * sizeof(std::uint32_t), 3 * sizeof(std::uint32_t),
-                                   object.indexCount / 3);
-        rtcSetGeometryUserData(triangles, const_cast<scene::Object*>(&object));
-        rtcCommitGeometry(triangles);
-        rtcAttachGeometry(scene, triangles);
-        rtcReleaseGeometry(triangles);
-    }
-
-    std::optional<Hit> intersect(RTCScene scene, const glm::vec3& origin, const glm::vec3& direction,
-                                 float from) const {
-        // Embree takes no ray without a direction: what came to nothing in float arithmetic meets nothing.
-        const auto finite = [](const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-        if (!finite(origin) || !finite(direction)) return std::nullopt;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        RTCRayHit ray{};
-        ray.ray.org_x = origin.x, ray.ray.org_y = origin.y, ray.ray.org_z = origin.z;
-        ray.ray.dir_x = direction.x, ray.ray.dir_y = direction.y, ray.ray.dir_z = direction.z;
-        ray.ray.tnear = from;
-        ray.ray.tfar = std::numeric_limits<float>::infinity();
-        ray.ray.mask = ~0u;
-        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context, &ray);
-        if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-
-        const auto* object =
-            static_cast<const scene::Object*>(rtcGetGeometryUserData(rtcGetGeometry(scene, ray.hit.geomID)));
-        const std::uint32_t* corner = &geometry->indices[object->firstIndex + 3 * ray.hit.primID];
-        const auto& vertices = geometry->vertices;
-        const glm::vec3 normal = (1.0f - ray.hit.u - ray.hit.v) * vertices[corner[0]].normal +
-                                 ray.hit.u * vertices[corner[1]].normal + ray.hit.v * vertices[corner[2]].normal;
-        if (glm::dot(normal, normal) > 1e-12f) return Hit{ray.ray.tfar, glm::normalize(normal)};
-        // Normals that cancel out between opposite ones: the triangle's own
-        const glm::vec3 flat(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
-        const float length = glm::length(flat);
-        return length > 0.0f ? std::optional(Hit{ray.ray.tfar, flat / length}) : std::nullopt;
-    }
-};
 
 float coneVersine(float halfAngleDeg) {
     const double sine = std::sin(0.5 * glm::radians(static_cast<double>(halfAngleDeg)));
@@ -102,9 +28,12 @@ CoarseTrace::CoarseTrace(const scene::Scene& scene) : impl_(std::make_unique<Imp
     if (!impl_->device) throw Error("Embree does not start; install libembree3-3 for this processor");
     impl_->geometry = scene.geometry;
     impl_->receivers.reset(rtcNewScene(impl_->device.get()));
+    impl_->all.reset(rtcNewScene(impl_->device.get()));
     for (const scene::Object& object : scene.geometry->objects) {
-        Scene& own = impl_->casters.emplace_back();
-        if (scene.materials[static_cast<std::size_t>(object.material)].caster) {
+        Impl::Scene& own = impl_->casters.emplace_back();
+        const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+        if (!(material.caster && material.thinWalled)) impl_->attach(impl_->all.get(), object);
+        if (material.caster) {
             own.reset(rtcNewScene(impl_->device.get()));
             impl_->attach(own.get(), object);
             rtcCommitScene(own.get());
@@ -113,6 +42,7 @@ CoarseTrace::CoarseTrace(const scene::Scene& scene) : impl_(std::make_unique<Imp
         }
     }
     rtcCommitScene(impl_->receivers.get());
+    rtcCommitScene(impl_->all.get());
 }
 
 CoarseTrace::~CoarseTrace() = default;

@@ -2,8 +2,10 @@
 #pragma once
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "render/exact_surfaces.h"
 #include "render/view.h"
 #include "scene/scene.h"
 
@@ -30,6 +32,15 @@ class CoarseTrace {
     // interpolated normals, light lost to total reflection left out.
     std::vector<Landing> trace(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster,
                                const View& emission, int grid, const std::vector<double>& wavelengthsNm) const;
+
+    struct Paths {
+        std::vector<Landing> landings;
+        double met = 0.0;                  // share of the photons that met their caster first
+    };
+    // The same exactly, as traced mode has it: photons that meet the caster `first` before all else, at each wavelength
+    // through every surface of `casters` (in the shaders' order) with both branches and up to `bounces` reflections.
+    Paths paths(const scene::Scene& scene, const scene::Light& light, std::span<const ExactCaster> casters,
+                std::size_t first, const View& emission, int grid, const std::vector<double>& wavelengthsNm, int bounces) const;
 
    private:
     struct Impl;

@@ -53,6 +53,7 @@ struct Request {
     Target target = Target::Composite;
     std::string pass;                       // Target::Pass: a name of passNames()
     Sample sample = Sample::U8;             // U8 for pictures; F16 or F32 for the spectral map; F32 pictures are linear
+    bool outerMap = false;                  // Spectral: what landed around the inner map, instead of that
     bool wavelengthBands = false;           // Spectral: one band per wavelength instead of RGB
     optics::Observer observer = optics::Observer::Cie1931;   // the fit: to compare with references made with it
     int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side

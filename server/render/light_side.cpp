@@ -6,6 +6,7 @@
 #include "render/error_estimate.h"
 #include "render/light_views.h"
 #include "render/map_energy.h"
+#include "render/map_pyramid.h"
 #include "shaders/shared/layout.h"
 
 namespace caustream::render {
@@ -14,24 +15,11 @@ namespace {
 
 constexpr int kSeenWavelengths = 16;     // of a continuous spectrum on the camera's side, which traces a few nodes of them
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
-constexpr int kShadowSize = 1024;
 constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels
 constexpr double kRoughnessUnit = 16.0;       // of its row in the ledger: map_resolve.comp
 constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
 
 static_assert(optics::kSpectrumSteps == layout::kSpectrumSteps);
-
-std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words) {
-    for (const GLuint word : words) hash = (hash ^ word) * 0x100000001b3ull;
-    return hash;
-}
-constexpr std::uint64_t kFnvStart = 0xcbf29ce484222325ull;
-
-std::vector<GLuint> readWords(const gl::Buffer& buffer, std::size_t count) {
-    std::vector<GLuint> words(count);
-    glGetNamedBufferSubData(buffer.get(), 0, static_cast<GLsizeiptr>(count * sizeof(GLuint)), words.data());
-    return words;
-}
 
 // Photons per side of the emission view, as many texels in all as a square grid but square on the light's sphere.
 glm::ivec2 gridSize(const View& view, int grid) {
@@ -41,43 +29,6 @@ glm::ivec2 gridSize(const View& view, int grid) {
 }
 
 int levelsOf(const Transport& transport) { return transport.filter ? layout::kMostLevels : 1; }
-
-std::size_t pyramidTexels(int size, int levels) {
-    std::size_t texels = 0;
-    for (int level = 0; level < levels; ++level) texels += static_cast<std::size_t>(size >> level) * static_cast<std::size_t>(size >> level);
-    return texels;
-}
-
-// The pyramid's levels added up at the finest, as map_resolve.comp does it: [texel][band], fixed-point units.
-std::vector<float> sumPyramid(const std::vector<GLuint>& map, int size, int levels, int bands) {
-    std::vector<float> above, own;
-    for (int level = levels - 1; level >= 0; --level) {
-        const int side = size >> level, coarse = side / 2;
-        const std::size_t first = pyramidTexels(size, level) * static_cast<std::size_t>(bands);
-        own.assign(map.begin() + static_cast<std::ptrdiff_t>(first),
-                   map.begin() + static_cast<std::ptrdiff_t>(first + pyramidTexels(side, 1) * static_cast<std::size_t>(bands)));
-        for (int y = 0; y < side && !above.empty(); ++y) {
-            for (int x = 0; x < side; ++x) {
-                // A fine texel's middle lies a quarter from its coarse texel's, towards the neighbour it shares with.
-                const int x0 = x / 2, y0 = y / 2;
-                const int x1 = std::clamp(x0 + (x % 2 ? 1 : -1), 0, coarse - 1), y1 = std::clamp(y0 + (y % 2 ? 1 : -1), 0, coarse - 1);
-                float* to = &own[static_cast<std::size_t>(y * side + x) * static_cast<std::size_t>(bands)];
-                const auto from = [&](int cx, int cy) { return &above[static_cast<std::size_t>(cy * coarse + cx) * static_cast<std::size_t>(bands)]; };
-                const float *a = from(x0, y0), *b = from(x1, y0), *c = from(x0, y1), *d = from(x1, y1);
-                for (int k = 0; k < bands; ++k) to[k] += (9.0f * a[k] + 3.0f * b[k] + 3.0f * c[k] + d[k]) / 64.0f;
-            }
-        }
-        above.swap(own);
-    }
-    return above;
-}
-
-optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in) {
-    const Transport& transport = in.transport;
-    if (!transport.wavelengthsNm.empty()) return optics::sampleWavelengthsAt(transport.wavelengthsNm, in.light.spectrum, in.observer);
-    if (in.plan.continuous) return optics::continuousSpectrum(in.plan.wavelengths, in.light.spectrum, in.observer);
-    return optics::sampleWavelengths(in.plan.wavelengths, in.light.spectrum, in.observer);
-}
 
 // The spectrum and the glass all along the band; empty unless it is continuous.
 std::vector<SpectrumStep> spectrumOf(const optics::WavelengthSet& set, const scene::Material& material, double outsideIndex) {
@@ -89,13 +40,23 @@ std::vector<SpectrumStep> spectrumOf(const optics::WavelengthSet& set, const sce
     return steps;
 }
 
-// A receiver that stands before nothing, seen from the light.
+}  // namespace
+
+optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in) {
+    const Transport& transport = in.transport;
+    if (!transport.wavelengthsNm.empty()) return optics::sampleWavelengthsAt(transport.wavelengthsNm, in.light.spectrum, in.observer);
+    if (in.plan.continuous) return optics::continuousSpectrum(in.plan.wavelengths, in.light.spectrum, in.observer);
+    return optics::sampleWavelengths(in.plan.wavelengths, in.light.spectrum, in.observer);
+}
+
+optics::WavelengthSet seenWavelengths(const LightSide::Inputs& in, const optics::WavelengthSet& traced) {
+    return traced.cumulative.empty() ? traced : optics::sampleWavelengths(kSeenWavelengths, in.light.spectrum, in.observer);
+}
+
 bool shadesNothing(const LightSide::Inputs& in, const scene::Object& object) {
     return !in.scene.materials[static_cast<std::size_t>(object.material)].caster && !in.enclosure.shades(object, in.light) &&
            !in.forced.has(Omission::Walls);
 }
-
-}  // namespace
 
 GLuint LightSide::white() {
     const std::uint8_t texel[4] = {255, 255, 255, 255};
@@ -218,7 +179,7 @@ void LightSide::tracePicture(const Inputs& in, const std::vector<LitCaster>& emi
 
     timer.stage("map_resolve", [&] {
         const auto resolve = [&](const View& view, const gl::Texture& receivers, int side, int sideLevels, std::size_t first, bool judged, gl::Texture& concentration) {
-            mapResolve_.run({.map = map_, .view = view, .receivers = receivers, .size = side, .levels = sideLevels, .firstTexel = static_cast<int>(first),
+            mapResolve_.run({.map = &map_, .view = view, .receivers = receivers, .size = side, .levels = sideLevels, .firstTexel = static_cast<int>(first),
                              .xyzToRgb = glm::mat3(out.wavelengths.xyzToRgb), .fluxPerFixed = 1.0 / fixedPerFlux,
                              .ledgerPerFixed = kFixedRange / totalFlux_ / fixedPerFlux, .judged = judged},
                             concentration, ledger_);
@@ -275,7 +236,7 @@ void LightSide::run(const Inputs& in, const LightFit& fit, gl::StageTimer& timer
     totalFlux_ = 0.0;
     batches_ = 1;
     out.wavelengths = wavelengthsOf(in);
-    out.seen = out.wavelengths.cumulative.empty() ? out.wavelengths : optics::sampleWavelengths(kSeenWavelengths, in.light.spectrum, in.observer);
+    out.seen = seenWavelengths(in, out.wavelengths);
     if (in.plan.casters > 0 && fit.casters.empty()) {
         out.warnings.push_back("the light \"" + in.light.name + "\" reaches no caster: aim it at one");
     } else if (!fit.casters.empty() && !fit.views) {

@@ -2,6 +2,7 @@
 // light and the transport options only, so that it is kept while the camera moves.
 #pragma once
 #include <glm/mat3x3.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,8 @@
 
 namespace caustream::render {
 
+struct ExactSums;
+
 // What the light did to the scene: the GPU images of one light pose and the numbers that go with them.
 struct LightMaps {
     bool hasShadow = false, hasMap = false;
@@ -43,7 +46,10 @@ struct LightMaps {
     std::uint32_t photons = 0;
     std::uint64_t mapHash = 0;             // FNV-1a of the fixed-point map; 0 unless asked for
     std::vector<float> bands;              // [texel][wavelength] concentration, when bands were asked for
+    std::vector<float> outerBands;         // Traced: those of the outer map
     std::vector<std::string> warnings;
+    std::shared_ptr<ExactSums> exact;      // Traced: what the photons so far add up to (traced_light_side.h)
+    std::optional<Convergence> convergence;// Traced: how far that has come
 };
 
 // Which casters the light reaches, and the views fitted to where their light lands.
@@ -106,5 +112,13 @@ class LightSide {
     int batches_ = 1;                      // of wavelengths, in each of which every photon is listed
     double totalFlux_ = 0.0;               // of the last run's emission views, an upper bound of all sums
 };
+
+// What the request and the plan trace, of the key light's spectrum.
+optics::WavelengthSet wavelengthsOf(const LightSide::Inputs& in);
+// Those of the camera's side: the same, or many of a continuous spectrum.
+optics::WavelengthSet seenWavelengths(const LightSide::Inputs& in, const optics::WavelengthSet& traced);
+// A receiver that stands before nothing, seen from the light.
+bool shadesNothing(const LightSide::Inputs& in, const scene::Object& object);
+inline constexpr int kShadowSize = 1024;   // texels a side
 
 }  // namespace caustream::render

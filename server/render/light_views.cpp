@@ -18,7 +18,6 @@ namespace {
 constexpr float kWidestTangent = 1.732f;   // 120 degrees across: beyond it texels say little
 constexpr float kNearShare = 0.01f;        // of the distance to what a view is for; nearer things are the lamp's own
 constexpr float kTurnedTangent = 1.2f;     // 100 degrees across: the published view is not turned beyond it
-constexpr double kLeftOutShare = 0.005;    // of the flux, given to the outer map
 
 struct Rect {
     glm::vec2 min{1e30f}, max{-1e30f};
@@ -154,37 +153,42 @@ View reachingTo(const scene::Scene& scene, const scene::Object& caster, View vie
     return view;
 }
 
-// The range of one image coordinate that leaves `share` of the flux out at either end.
-glm::vec2 quantileRange(std::vector<std::pair<float, float>>& valueAndFlux, double share) {
+// Where landings lie in a view's image, in order along each axis: the value and the flux up to and with it.
+struct Spread {
+    std::vector<std::pair<float, double>> x, y;
+};
+
+void sumUp(std::vector<std::pair<float, double>>& valueAndFlux) {
     std::sort(valueAndFlux.begin(), valueAndFlux.end());
-    double total = 0.0;
-    for (const auto& [value, flux] : valueAndFlux) total += flux;
     double sum = 0.0;
-    glm::vec2 range(valueAndFlux.front().first, valueAndFlux.back().first);
-    bool low = false;
-    for (const auto& [value, flux] : valueAndFlux) {
-        sum += flux;
-        if (!low && sum > share * total) range.x = value, low = true;
-        if (sum >= (1.0 - share) * total) {
-            range.y = value;
-            break;
-        }
-    }
-    return range;
+    for (auto& [value, flux] : valueAndFlux) sum += flux, flux = sum;
 }
 
-// Where the landings lie in the view's image, less the left-out share. Empty when none is in front of the light.
-Rect landingRect(const View& view, std::span<const Landing> landings, double leftOut) {
-    std::vector<std::pair<float, float>> x, y;
+Spread spreadOf(const View& view, std::span<const Landing> landings) {
+    Spread spread;
     for (const Landing& landing : landings) {
         glm::vec2 p;
         if (!project(view, view.toView(landing.position), p)) continue;
         if (view.perspective && std::max(std::abs(p.x), std::abs(p.y)) > kWidestTangent) continue;
-        x.emplace_back(p.x, landing.flux);
-        y.emplace_back(p.y, landing.flux);
+        spread.x.emplace_back(p.x, landing.flux);
+        spread.y.emplace_back(p.y, landing.flux);
     }
-    if (x.empty()) return {};
-    const glm::vec2 rangeX = quantileRange(x, leftOut / 4.0), rangeY = quantileRange(y, leftOut / 4.0);
+    sumUp(spread.x), sumUp(spread.y);
+    return spread;
+}
+
+// The range of one image coordinate that leaves `share` of the flux out at either end.
+glm::vec2 quantileRange(const std::vector<std::pair<float, double>>& valueAndSum, double share) {
+    const double total = valueAndSum.back().second;
+    const auto low = std::find_if(valueAndSum.begin(), valueAndSum.end(), [&](const auto& at) { return at.second > share * total; });
+    const auto high = std::find_if(valueAndSum.begin(), valueAndSum.end(), [&](const auto& at) { return at.second >= (1.0 - share) * total; });
+    return {low == valueAndSum.end() ? valueAndSum.front().first : low->first, high == valueAndSum.end() ? valueAndSum.back().first : high->first};
+}
+
+// Where the landings lie in the view's image, less the left-out share. Empty when none is in front of the light.
+Rect landingRect(const Spread& spread, double leftOut) {
+    if (spread.x.empty()) return {};
+    const glm::vec2 rangeX = quantileRange(spread.x, leftOut / 4.0), rangeY = quantileRange(spread.y, leftOut / 4.0);
     return {glm::vec2(rangeX.x, rangeY.x), glm::vec2(rangeX.y, rangeY.y)};
 }
 
@@ -245,30 +249,41 @@ View backView(const scene::Scene& scene, const scene::Light& light, const scene:
     return reachingTo(scene, caster, view);
 }
 
-std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings) {
+std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings,
+                                 std::span<const double> leftOutShares, double outerWidth) {
     glm::vec3 mean(0.0f);
     float flux = 0.0f;
     for (const Landing& landing : landings) mean += landing.flux * landing.position, flux += landing.flux;
     if (!(flux > 0.0f)) return std::nullopt;
     mean /= flux;
 
-    // The roll whose rectangle is smallest, then its middle on the axis.
+    // The roll whose rectangle is smallest, and the share outside it that makes texels narrowest for all light together;
+    // then its middle on the axis.
     const Span span = aroundLandings(scene, light, landings, mean);
     const View upright = frame(scene, light, mean, span);
     const float distance = std::max(-upright.toView(mean).z, upright.nearM);
-    float bestArea = std::numeric_limits<float>::max(), roll = 0.0f;
+    double bestWidth = std::numeric_limits<double>::max(), leftOut = 0.0;
+    float roll = 0.0f;
     Rect best;
     constexpr int kRolls = 12;
     for (int i = 0; i < kRolls; ++i) {
         const float angle = glm::half_pi<float>() * static_cast<float>(i) / kRolls;
-        const Rect rect = landingRect(rolled(upright, angle), landings, kLeftOutShare);
-        const glm::vec2 size = rect.max - rect.min;
-        if (rect.min.x <= rect.max.x && size.x * size.y < bestArea) bestArea = size.x * size.y, roll = angle, best = rect;
+        const Spread spread = spreadOf(rolled(upright, angle), landings);
+        const glm::vec2 all = landingRect(spread, 0.0).half();
+        for (const double share : leftOutShares) {
+            const Rect rect = landingRect(spread, share);
+            const glm::vec2 size = rect.half();
+            if (rect.min.x > rect.max.x) continue;
+            const double width = (1.0 - share) * std::sqrt(static_cast<double>(size.x) * static_cast<double>(size.y)) +
+                                 share * outerWidth * std::sqrt(static_cast<double>(all.x) * static_cast<double>(all.y));
+            if (width < bestWidth) bestWidth = width, leftOut = share, roll = angle, best = rect;
+        }
     }
-    if (bestArea == std::numeric_limits<float>::max()) return std::nullopt;
+    if (bestWidth == std::numeric_limits<double>::max()) return std::nullopt;
     MapViews views;
     views.inner = rolled(recentre(scene, light, rolled(upright, roll), best, distance, span), roll);
-    const Rect rect = landingRect(views.inner, landings, kLeftOutShare), all = landingRect(views.inner, landings, 0.0);
+    const Spread spread = spreadOf(views.inner, landings);
+    const Rect rect = landingRect(spread, leftOut), all = landingRect(spread, 0.0);
     if (rect.min.x > rect.max.x) return std::nullopt;
 
     // A few hundred photons end before the caustic does: half a step of their grid wider.
@@ -320,7 +335,7 @@ View wholeView(const scene::Scene& scene, const scene::Light& light, std::span<c
     for (int i = 0; i <= turns; ++i) {
         const glm::mat3 turned(i > 0 ? glm::rotate(glm::mat4(1.0f), glm::radians(5.0f * static_cast<float>(i)), turn) : glm::mat4(1.0f));
         View view = frame(scene, light, cone.perspective ? light.position + turned * along : mean / all, wholeScene(scene));
-        Rect rect = landingRect(view, landings, kLeftOutShare);
+        Rect rect = landingRect(spreadOf(view, landings), kLeftOut[0]);
         for (const View& emission : emissions) addCorners(emission, view, rect);
         const glm::vec2 half = 1.05f * halfExtentAround(rect);
         const float reach = std::max(half.x, half.y);

@@ -17,13 +17,16 @@ std::optional<View> emissionView(const scene::Scene& scene, const scene::Light& 
 View backView(const scene::Scene& scene, const scene::Light& light, const scene::Object& caster);
 
 struct MapViews {
-    View inner;             // the smallest rolled rectangle that takes 99.5% of the flux
+    View inner;             // the smallest rolled rectangle that takes 99.5% (traced: fewer) of the flux
     View outer;             // same axis, wider: what lands outside the inner one
     glm::vec3 landing;      // mean of the flux, world space
 };
+inline constexpr double kLeftOut[] = {0.005};   // of the flux, given to the outer map
 // Fitted to where light lands; nothing when it lands nowhere. A function of its arguments alone, so that equal input
-// gives equal bits whatever came before.
-std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings);
+// gives equal bits whatever came before. Of several `leftOutShares` the one whose texels are narrowest in the mean over all
+// light, where a texel of the outer map, were it as wide as the inner, counts `outerWidth` times one of the inner.
+std::optional<MapViews> mapViews(const scene::Scene& scene, const scene::Light& light, std::span<const Landing> landings,
+                                 std::span<const double> leftOutShares = kLeftOut, double outerWidth = 0.0);
 
 // The light's cone (at most 120 degrees across), or the frustum towards the casters for a point light.
 View shadowView(const scene::Scene& scene, const scene::Light& light);

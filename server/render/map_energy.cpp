@@ -11,6 +11,17 @@ std::vector<glm::vec4> readTexels(const gl::Texture& image) {
     return texels;
 }
 
+std::vector<GLuint> readWords(const gl::Buffer& buffer, std::size_t count) {
+    std::vector<GLuint> words(count);
+    glGetNamedBufferSubData(buffer.get(), 0, static_cast<GLsizeiptr>(count * sizeof(GLuint)), words.data());
+    return words;
+}
+
+std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words) {
+    for (const GLuint word : words) hash = (hash ^ word) * 0x100000001b3ull;
+    return hash;
+}
+
 double texelExtent(const View& view, int size, int index) {
     const double hx = view.halfExtent.x, hy = view.halfExtent.y, area = 4.0 * hx * hy / (static_cast<double>(size) * size);
     if (!view.perspective) return area;

@@ -17,4 +17,10 @@ double texelExtent(const View& view, int size, int index);
 // Luminous flux of a map (RGBA32F concentration in linear BT.709) over the light's intensity on its axis.
 double mapFlux(const gl::Texture& concentration, const View& view);
 
+std::vector<GLuint> readWords(const gl::Buffer& buffer, std::size_t count);
+
+// FNV-1a, word by word; begin with kFnvStart.
+std::uint64_t fnv1a(std::uint64_t hash, const std::vector<GLuint>& words);
+inline constexpr std::uint64_t kFnvStart = 0xcbf29ce484222325ull;
+
 }  // namespace caustream::render

@@ -12,6 +12,7 @@
 #include "error.h"
 #include "gl/context.h"
 #include "render/camera_side.h"
+#include "render/choose_mode.h"
 #include "render/choose_transport.h"
 #include "render/key_light.h"
 #include "render/light_side.h"
@@ -23,6 +24,7 @@
 #include "render/read_back.h"
 #include "render/thesis_light_side.h"
 #include "render/thesis_plan.h"
+#include "render/traced_light_side.h"
 #include "scene/builtin_scenes.h"
 #include "shaders/shared/layout.h"
 
@@ -63,7 +65,7 @@ std::string lightKey(const Request& request, const scene::Light& light, int phot
     key.add(request.scene->geometry.get());
     key.add(request.scene->outsideIndex);
     for (const scene::Material& material : request.scene->materials) {
-        key.add(material.caster), key.add(material.thinWalled);
+        key.add(material.caster), key.add(material.thinWalled), key.add(material.mirror);
         if (!material.caster) continue;
         for (double nm = optics::kBandMinNm; nm <= optics::kBandMaxNm; nm += 50.0) {
             key.add(optics::refractiveIndex(material.dispersion, nm));
@@ -78,7 +80,7 @@ std::string lightKey(const Request& request, const scene::Light& light, int phot
     const Transport& t = request.transport;
     key.add(t.mode), key.add(t.hierarchyLevels), key.add(t.wavelengths), key.addAll(t.wavelengthsNm), key.add(photonGrid), key.add(t.backLayer), key.add(t.mapSize), key.add(t.backSteps);
     key.add(t.receiverSteps), key.add(t.gapFill), key.add(t.filter), key.add(t.forceDispersive), key.add(request.wavelengthBands);
-    key.add(request.observer), key.add(request.forced);
+    key.add(t.bounces), key.add(t.exactReceivers), key.add(request.observer), key.add(request.forced);
     return key.bytes();
 }
 
@@ -97,11 +99,12 @@ View cameraView(const scene::Camera& camera, const scene::Scene& scene, int widt
 }
 
 struct SceneEntry {
-    explicit SceneEntry(const scene::Scene& scene) : gpu(scene.geometry), tracer(scene), enclosure(*scene.geometry), geometry(scene.geometry) {}
+    explicit SceneEntry(const scene::Scene& scene) : gpu(scene.geometry), tracer(scene), enclosure(*scene.geometry), geometry(scene.geometry), casters(exactCasters(scene)) {}
     GpuScene gpu;
     CoarseTrace tracer;
     Enclosure enclosure;
     std::shared_ptr<const scene::Geometry> geometry;
+    std::vector<ExactCaster> casters;         // of traced transport
     std::unique_ptr<ExactSurfaces> surfaces;  // made when first traced
 
     const ExactSurfaces& exact(const scene::Scene& scene) {
@@ -123,6 +126,7 @@ struct Pipeline::Impl {
     gl::StageTimer timer;
     LightSide lightSide;
     ThesisLightSide thesisSide;
+    TracedLightSide tracedSide;
     GapFill gapFill;
     CameraSide cameraSide;
     Present present;
@@ -139,7 +143,7 @@ struct Pipeline::Impl {
     std::list<Chosen> chosen;                  // newest first: what each scene and wish had last
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
-        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), gapFill(s), cameraSide(s), present(s) {
+        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), tracedSide(s), gapFill(s), cameraSide(s), present(s) {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
     }
 
@@ -226,7 +230,10 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     auto found = std::find_if(lights.begin(), lights.end(), [&](const LightEntry& e) { return e.key == wanted; });
     // The light's own images are not kept: looking at them means making them. So does a hash that was not taken.
     const bool shown = request.target == Target::Pass && (request.pass == "caster_layers" || request.pass == "receiver_depth");
-    facts.lightCached = found != lights.end() && !shown && !request.countResiduals && !(request.still && found->maps.hasMap && found->maps.mapHash == 0);
+    const bool traced = transport.mode == Mode::Traced, thesis = transport.mode == Mode::Thesis;
+    const bool unhashed = request.still && found != lights.end() && found->maps.hasMap && found->maps.mapHash == 0;
+    facts.lightCached = found != lights.end() && !shown && !request.countResiduals && (traced || !unhashed);
+    facts.adding = facts.lightCached && request.converge && found->maps.convergence && !found->maps.convergence->converged;
     const auto conclude = [&](const LightMaps& maps) {
         facts.castersLit = maps.castersLit, facts.lands = maps.lands, facts.outerEmpty = maps.outerEmpty;
         const auto& objects = request.scene->geometry->objects;
@@ -240,10 +247,20 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
         plan = makePlan(facts, request);
     };
     const bool again = request.forced.has(Omission::UnchangedLight);
+    const auto inputs = [&] {
+        return LightSide::Inputs{*request.scene, entry.gpu, entry.tracer, light, transport, plan, entry.enclosure, request.wavelengthBands,
+                                 request.still, request.countResiduals, request.observer, request.forced};
+    };
     if (facts.lightCached && !again) {
         lights.splice(lights.begin(), lights, found);
-        conclude(found->maps);
-        return found->maps;
+        LightMaps& maps = found->maps;
+        conclude(maps);
+        if (!traced || !maps.hasMap || request.wavelengthBands) return maps;
+        const LightSide::Inputs in = inputs();
+        const TracedLightSide::Inputs all{in, entry.exact(*request.scene), context.software()};
+        if (facts.adding) tracedSide.add(all, timer, maps), tracedSide.collect(all, maps);
+        else if (unhashed) tracedSide.hash(all, maps);
+        return maps;
     }
     plan = makePlan(facts, request);   // which wavelengths the light has to be fitted to
     if (found != lights.end()) {
@@ -256,11 +273,19 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     lights.front().key.clear();   // not valid until it is done
     LightMaps& maps = lights.front().maps;
     maps.error.reset();
-    const LightSide::Inputs in{*request.scene, entry.gpu, entry.tracer, light, transport, plan, entry.enclosure, request.wavelengthBands, request.still, request.countResiduals, request.observer, request.forced};
-    const bool thesis = transport.mode == Mode::Thesis;
+    if (!traced) maps.convergence.reset(), maps.exact.reset();
+    const LightSide::Inputs in = inputs();
     if (thesis) {
         thesisSide.run(in, timer, maps);
         maps.outerEmpty = false;
+    } else if (traced) {
+        const TracedLightSide::Inputs all{in, entry.exact(*request.scene), context.software()};
+        const TracedLightSide::Fit fit = TracedLightSide::fit(all);
+        facts.castersLit = maps.castersLit = static_cast<int>(fit.emitters.size());
+        facts.lands = maps.lands = fit.views.has_value();
+        plan = makePlan(facts, request);
+        tracedSide.begin(all, fit, timer, maps);
+        tracedSide.collect(all, maps);
     } else {
         const LightFit fit = LightSide::fit(in);
         facts.castersLit = maps.castersLit = static_cast<int>(fit.casters.size());
@@ -270,7 +295,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     }
     if (maps.hasMap && plan.runs("gap_fill")) fillGaps(maps, request.still);
     if (thesis) thesisSide.collect(maps);
-    else lightSide.collect(maps);
+    else if (!traced) lightSide.collect(maps);
     lights.front().key = wanted;
     conclude(maps);
     return maps;
@@ -348,14 +373,18 @@ Frame Pipeline::run(const Request& asked) {
     impl.timer.beginFrame();
     const scene::Scene& scene = *asked.scene;
     SceneEntry& entry = impl.sceneEntry(scene);
+    const ModeChoice mode = chooseMode(asked, entry.casters);
+    Request wanted = asked;
+    wanted.transport.mode = mode.mode;
     const View view = cameraView(asked.camera, scene, asked.width, asked.height);
     const int key = keyLight(scene);
-    PlanFacts facts = gatherFacts(asked, scene.lights[static_cast<std::size_t>(key)], view, entry.enclosure);
+    PlanFacts facts = gatherFacts(wanted, scene.lights[static_cast<std::size_t>(key)], view, entry.enclosure);
     facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
     Frame frame;
-    const Request request = impl.withChoice(asked, facts, frame.stats.choice);
+    facts.modeReason = mode.why;
+    const Request request = impl.withChoice(wanted, facts, frame.stats.choice);
     Transport transport = request.transport;
-    if (transport.photonGrid == 0) {
+    if (transport.photonGrid == 0 && transport.mode != Mode::Traced) {
         transport.photonGrid = transport.mode == Mode::Thesis ? kThesisGrid : impl.context.software() ? 256 : 1024;
     }
 
@@ -389,11 +418,16 @@ Frame Pipeline::run(const Request& asked) {
     // Read-back
     impl.timer.stage("read_back", [&] {
         if (!floats) readImage(impl.output, request.sample, frame);
-        else if (request.wavelengthBands) packBands(maps.bands, request.transport.mapSize, static_cast<int>(maps.wavelengths.nm.size()), request.sample, frame);
+        else if (request.wavelengthBands) {
+            const std::vector<float>& bands = request.outerMap ? maps.outerBands : maps.bands;
+            const auto count = maps.wavelengths.nm.size();
+            if (bands.empty() && request.outerMap) throw Error("the outer map's bands are kept by traced transport alone");
+            packBands(bands, request.outerMap ? static_cast<int>(std::lround(std::sqrt(bands.size() / count))) : request.transport.mapSize, static_cast<int>(count), request.sample, frame);
+        } else if (request.outerMap && maps.hasMap) readImage(maps.outerMap, request.sample, frame);
         else readImage(impl.mapOf(maps, request.transport.mapSize), request.sample, frame);
     });
     frame.wavelengthsNm = maps.wavelengths.nm;
-    frame.lightMatrix = maps.mapView.worldToClip();
+    frame.lightMatrix = (request.outerMap ? maps.outerView : maps.mapView).worldToClip();
     frame.mapHash = maps.mapHash;
     for (const auto& row : impl.timer.rows()) frame.stats.stages.push_back({row.name, row.ms});
     const bool traced = plan.runs("photon_trace");
@@ -401,6 +435,7 @@ Frame Pipeline::run(const Request& asked) {
     frame.stats.ledger = maps.ledger;
     if (request.countResiduals) frame.stats.residuals = maps.residuals;
     frame.stats.error = maps.error;
+    frame.stats.convergence = maps.convergence;
     frame.stats.photons = maps.photons;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
     frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

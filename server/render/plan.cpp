@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/thesis_plan.h"
+#include "render/traced_plan.h"
 
 namespace caustream::render {
 
@@ -65,23 +66,6 @@ class Rows {
     const Request& request_;
 };
 
-void chooseWavelengths(RenderPlan& plan, const PlanFacts& facts, const Request& request) {
-    const Transport& transport = request.transport;
-    const bool continuous = transport.wavelengthsNm.empty() && transport.wavelengths == kContinuous;
-    const int asked = !transport.wavelengthsNm.empty() ? static_cast<int>(transport.wavelengthsNm.size())
-                      : !continuous ? transport.wavelengths
-                      : request.wavelengthBands ? kContinuousBands : facts.continuousNodes;
-    const bool forced = transport.forceDispersive || request.forced.has(Omission::Colours);
-    if (facts.dispersive || forced || request.wavelengthBands || !transport.wavelengthsNm.empty()) {
-        plan.wavelengths = asked;
-        plan.continuous = continuous && !request.wavelengthBands;
-        plan.wavelengthReason = facts.dispersive ? "the glass disperses" : "asked for";
-    } else {
-        plan.wavelengths = 1;
-        plan.wavelengthReason = "no glass disperses: one is white";
-    }
-}
-
 // Whether there is a caustic.
 bool addLightSide(RenderPlan& plan, const PlanFacts& facts, const Request& request) {
     Rows rows(plan, facts, request);
@@ -123,6 +107,23 @@ bool addLightSide(RenderPlan& plan, const PlanFacts& facts, const Request& reque
 }
 
 }  // namespace
+
+void chooseWavelengths(RenderPlan& plan, const PlanFacts& facts, const Request& request) {
+    const Transport& transport = request.transport;
+    const bool continuous = transport.wavelengthsNm.empty() && transport.wavelengths == kContinuous;
+    const int asked = !transport.wavelengthsNm.empty() ? static_cast<int>(transport.wavelengthsNm.size())
+                      : !continuous ? transport.wavelengths
+                      : request.wavelengthBands ? kContinuousBands : facts.continuousNodes;
+    const bool forced = transport.forceDispersive || request.forced.has(Omission::Colours);
+    if (facts.dispersive || forced || request.wavelengthBands || !transport.wavelengthsNm.empty()) {
+        plan.wavelengths = asked;
+        plan.continuous = continuous && !request.wavelengthBands;
+        plan.wavelengthReason = facts.dispersive ? "the glass disperses" : "asked for";
+    } else {
+        plan.wavelengths = 1;
+        plan.wavelengthReason = "no glass disperses: one is white";
+    }
+}
 
 bool RenderPlan::runs(const std::string& pass) const {
     return std::any_of(entries.begin(), entries.end(), [&](const PlanEntry& entry) { return entry.pass == pass && entry.run; });
@@ -179,6 +180,7 @@ void addCameraSide(RenderPlan& plan, const PlanFacts& facts, const Request& requ
 
 RenderPlan makePlan(const PlanFacts& facts, const Request& request) {
     if (request.transport.mode == Mode::Thesis) return makeThesisPlan(facts, request);
+    if (request.transport.mode == Mode::Traced) return makeTracedPlan(facts, request);
     RenderPlan plan;
     plan.casters = facts.casters;
     plan.traced = request.transport.mode == Mode::Traced;

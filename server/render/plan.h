@@ -30,6 +30,9 @@ struct PlanFacts {
     bool castersInCamera = false;
     int glass = 0, glassInCamera = 0;   // casters that are drawn: refracting or thin-walled
     double boxShare = 0.0;              // of the picture's pixels, in the boxes of the casters in view
+    int mirrors = 0;                    // casters of traced transport only
+    std::string modeReason;             // why this transport, where that was left to us
+    bool adding = false;                // Traced: photons are added to the map that is there
     int continuousNodes = 4;            // exact wavelengths that this machine affords a continuous spectrum
 };
 
@@ -41,12 +44,16 @@ struct RenderPlan {
     int casters = 0;                    // that refract
     bool shadow = false;                // something throws one
     bool traced = false;                // exact transport: photon_paths, camera_paths
+    bool exactReceivers = false;        // met triangle by triangle: asked for, or one can stand before a caster
 
     bool runs(const std::string& pass) const;
 };
 
 // The passes' names in order are those of passNames().
 RenderPlan makePlan(const PlanFacts& facts, const Request& request);
+
+// How many wavelengths the light needs, whether all between them too, and why.
+void chooseWavelengths(RenderPlan& plan, const PlanFacts& facts, const Request& request);
 
 // The rows of the camera's passes; `caustics`: there is a map to look up. Any mode's plan ends with them.
 void addCameraSide(RenderPlan& plan, const PlanFacts& facts, const Request& request, bool caustics);

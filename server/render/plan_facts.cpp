@@ -21,6 +21,7 @@ PlanFacts gatherFacts(const Request& request, const scene::Light& key, const Vie
     double pixels = 0.0;
     for (const scene::Object& object : scene.geometry->objects) {
         const scene::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+        facts.mirrors += material.mirror;
         if (!material.caster) {
             ++facts.receivers;
             facts.walls += !enclosure.shades(object, key);

@@ -13,7 +13,6 @@ namespace caustream::render {
 namespace {
 
 constexpr int kCoarseGrid = 16;      // photons a side of the trace that tells whether the cone holds the caustic
-constexpr int kShadowSize = 1024;
 constexpr glm::vec3 kLuminance(0.2126f, 0.7152f, 0.0722f);   // BT.709
 
 std::uint64_t fnv1a(std::uint64_t hash, const std::vector<glm::vec4>& texels) {

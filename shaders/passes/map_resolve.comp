@@ -11,7 +11,11 @@ layout(local_size_x = kGroupSize) in;
 layout(std430, binding = kBindLedger) buffer Ledger { uint ledger[]; };
 layout(rgba32f, binding = 0) uniform writeonly image2D u_out;
 
+#if ADAPTED
+uniform sampler2D u_kept;            // XYZ, even - odd Y of this level, from map_adapt
+#else
 uniform usamplerBuffer u_map;        // kMapWords of each texel: one fetch where a storage buffer takes four loads
+#endif
 uniform int u_firstTexel;            // of this level in the buffer
 uniform float u_luminance;           // ledger units per fixed-point unit of Y
 #if ABOVE
@@ -51,8 +55,12 @@ Column columnAt(int x, int y) {
 // Writes a texel that gets `above` from the coarser levels; `passed`: Y of the two texels before it in the row.
 void resolve(ivec2 texel, vec4 above, bool third, inout vec2 passed) {
     ivec2 size = imageSize(u_out);
+#if ADAPTED
+    vec4 sum = texelFetch(u_kept, texel, 0) + above;
+#else
     uvec4 words = texelFetch(u_map, u_firstTexel + texel.x + texel.y * size.x);
     vec4 sum = vec4(words.x, words.y + words.z, words.w, int(words.y - words.z)) + above;
+#endif
 #if FINEST
     g_deposited += sum.y;
     g_halves += abs(sum.w);

@@ -17,6 +17,9 @@ LAYOUT_CONST kMapWords = 4;           // uints a texel of the map: X, Y of the e
 LAYOUT_CONST kMapX = 0;
 LAYOUT_CONST kMapEvenY = 1;            // odd: the next
 LAYOUT_CONST kMapZ = 3;
+LAYOUT_CONST kWideWords = 8;          // uints a texel of the exact map: the same four as sums of 64 bits, low word first
+LAYOUT_CONST kWideEvenY = 2;           // odd: two words on
+LAYOUT_CONST kWideZ = 6;
 LAYOUT_CONST kListHeader = 4;          // uints before a photon list's texels: the dispatch size (3), the photon count
 
 // Shader storage bindings
@@ -25,6 +28,9 @@ LAYOUT_CONST kBindMap = 1;
 LAYOUT_CONST kBindLedger = 2;
 LAYOUT_CONST kBindRetry = 3;
 LAYOUT_CONST kBindResiduals = 4;
+LAYOUT_CONST kBindOuterMap = 5;
+LAYOUT_CONST kBindLandings = 6;
+LAYOUT_CONST kBindOuterLandings = 7;
 
 // Rows of the energy ledger, fixed point in the map's unit, luminance-weighted. Each exists kLedgerBanks times, a cache
 // line apart, so that two processors do not wait for each other; the banks are summed on the CPU.
@@ -43,6 +49,7 @@ LAYOUT_CONST kLedgerStep = 11;         // what the map would change by, were eac
 LAYOUT_CONST kLedgerStepOf = 12;       // of this luminance
 LAYOUT_CONST kLedgerGrain = 13;        // what texels of the finest level differ from their neighbours in the row by, / 16
 LAYOUT_CONST kLedgerOuter = 14;        // the part of kLedgerDeposited in the outer map
+LAYOUT_CONST kLedgerCut = 15;          // exact paths with too many bounces, or too weak to follow
 LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
 LAYOUT_CONST kLedgerBanks = 32;
 

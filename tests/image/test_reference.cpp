@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <glm/matrix.hpp>
 
 #include "gl/context.h"
@@ -48,9 +50,15 @@ image::Comparison compareScene(const std::string& name, render::Mode mode = rend
     const render::Frame frame = run(request);
     EXPECT_EQ(frame.wavelengthsNm, reference.nm);
 
-    const image::Comparison result = image::compare(image::floorIrradiance(frame, reference, 8), reference);
+    std::vector<float> irradiance = image::floorIrradiance(frame, reference, 8);
+    if (mode == render::Mode::Traced) {   // whose outer map is no afterthought: what bounces about lands there
+        request.outerMap = true;
+        const std::vector<float> outer = image::floorIrradiance(run(request), reference, 8);
+        std::transform(outer.begin(), outer.end(), irradiance.begin(), irradiance.begin(), std::plus<>());
+    }
+    const image::Comparison result = image::compare(irradiance, reference);
     std::printf("%s%s: relative L1 %.4f, flux ratio %.4f (worst wavelength %.4f), worst centroid %.3f cells\n",
-                mode == render::Mode::Thesis ? "as published, " : "", name.c_str(),
+                mode == render::Mode::Thesis ? "as published, " : mode == render::Mode::Traced ? "traced, " : "", name.c_str(),
                 result.relativeL1, result.fluxRatio, result.worstFluxRatio, result.worstCentroidCells);
     return result;
 }
@@ -102,6 +110,31 @@ TEST(Reference, PrismInAContinuousSpectrum) {
 TEST(Reference, GemKeepsToTheTwoInterfaceFloor) {
     const image::Comparison result = compareScene("gem");
     EXPECT_LE(result.relativeL1, 0.35);
+}
+
+// Traced exactly, eight reflections inside: what remains is the map's texels and its photons.
+TEST(Reference, GemTraced) {
+    const image::Comparison result = compareScene("gem", render::Mode::Traced);
+    EXPECT_LE(result.relativeL1, 0.03);
+    EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
+    EXPECT_LE(result.worstCentroidCells, 0.5);
+}
+
+// No worse than refined.
+TEST(Reference, SphereTraced) {
+    for (const int levels : {4, 5}) {
+        const image::Comparison result = compareScene("sphere", render::Mode::Traced, levels);
+        EXPECT_LE(result.relativeL1, 0.05);
+        EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
+        EXPECT_LE(result.worstCentroidCells, 0.5);
+    }
+}
+
+TEST(Reference, PrismTraced) {
+    const image::Comparison result = compareScene("prism", render::Mode::Traced);
+    EXPECT_LE(result.relativeL1, 0.0071);
+    EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.01);
+    EXPECT_LE(result.worstCentroidCells, 0.5);
 }
 
 // The published algorithm, as its printed shader does it. Its floor with infinitely many photons, computed apart, is .313

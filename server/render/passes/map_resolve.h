@@ -5,6 +5,7 @@
 
 #include "gl/names.h"
 #include "gl/shader_library.h"
+#include "render/passes/map_adapt.h"
 #include "render/view.h"
 #include "shaders/shared/layout.h"
 
@@ -13,7 +14,8 @@ namespace caustream::render {
 class MapResolve {
    public:
     struct Inputs {
-        const gl::Buffer& map;            // photon_trace, kMapWords a texel
+        const gl::Buffer* map;            // photon_trace, kMapWords a texel; null: `kept`
+        const KeptLevels* kept = nullptr; // map_adapt
         const View& view;
         const gl::Texture& receivers;     // receiver_depth of that view, `size` texels a side
         int size;                         // texels a side of the finest level

@@ -1,0 +1,53 @@
+#include "render/traced_plan.h"
+
+#include <string>
+
+namespace caustream::render {
+
+namespace {
+
+std::string whyNoCaustic(const PlanFacts& facts) {
+    if (facts.casters + facts.mirrors == 0) {
+        return facts.idleCasters ? "every caster has the index of what is around it"
+               : facts.thinWalled ? "thin-walled casters bend no light" : "no caster in the scene";
+    }
+    return facts.castersLit == 0 ? "the light reaches no caster" : "no light that passes a caster lands on a receiver";
+}
+
+}  // namespace
+
+RenderPlan makeTracedPlan(const PlanFacts& facts, const Request& request) {
+    RenderPlan plan;
+    plan.traced = true;
+    plan.casters = facts.casters + facts.mirrors;
+    chooseWavelengths(plan, facts, request);
+    const Transport& transport = request.transport;
+    const bool caustics = plan.casters > 0 && facts.castersLit > 0 && facts.lands;
+    const std::string none = whyNoCaustic(facts);
+    plan.shadow = caustics || facts.shadowCasters;
+    plan.exactReceivers = transport.exactReceivers || facts.shadowCasters;
+
+    const auto light = [&](const char* pass, bool needed, bool again, const std::string& why, const std::string& whyNot, std::vector<std::string> without = {}) {
+        const bool run = needed && (!facts.lightCached || again);
+        plan.entries.push_back({pass, run, run ? why : needed ? "scene, light, materials and transport are unchanged" : whyNot,
+                                run ? std::move(without) : std::vector<std::string>{}});
+    };
+    const std::string mode = facts.modeReason.empty() ? "asked for" : facts.modeReason;
+    std::vector<std::string> paths;
+    if (!facts.cookie) paths.push_back("a cookie: the light has none");
+    if (!plan.exactReceivers) paths.push_back("receivers triangle by triangle: none can stand before a caster, and the map's view has them");
+    if (!request.wavelengthBands) paths.push_back("bands: colours are asked for");
+    light("receiver_depth", caustics || plan.shadow, false, caustics ? "light lands behind a caster" : "a receiver throws a shadow", "nothing throws a shadow");
+    light("photon_paths", caustics, facts.adding,
+          (facts.adding ? "adds photons: " : "traced exactly: ") + mode + "; " + std::to_string(plan.wavelengths) + " wavelengths" +
+              (plan.continuous ? " and the spectrum between them: " : ": ") + plan.wavelengthReason, none, std::move(paths));
+    const std::string bands = "the bands are sent as they are";
+    const bool summed = caustics && !request.wavelengthBands;
+    light("map_adapt", summed, facts.adding, transport.filter ? "sharp where photons are dense, spread where they are sparse" : "the filter is off: all stays sharp",
+          caustics ? bands : none);
+    light("map_resolve", summed, facts.adding, "photons were traced", caustics ? bands : none);
+    addCameraSide(plan, facts, request, summed);
+    return plan;
+}
+
+}  // namespace caustream::render
