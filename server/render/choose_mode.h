@@ -11,6 +11,7 @@ namespace caustream::render {
 struct ModeChoice {
     Mode mode = Mode::Refined;
     std::string why;                       // a sentence; empty: the mode was asked for
+    bool traceAtRest = false;              // refined only as long as something moves
 };
 
 // Sets of planes are traced exactly at once; meshes while nothing moves (Request::converge); where no caster bends or

@@ -150,6 +150,9 @@ struct Pipeline::Impl {
     SceneEntry& sceneEntry(const scene::Scene& scene);
     Request withChoice(const Request& request, const PlanFacts& facts, std::string& sentence);
     LightMaps& lightMaps(const Request& request, SceneEntry& entry, int key, Transport transport, RenderPlan& plan, PlanFacts facts);
+    bool isKept(const std::string& lightPose) const {
+        return std::any_of(lights.begin(), lights.end(), [&](const LightEntry& e) { return e.key == lightPose; });
+    }
     void picture(const Request& request, LightMaps& maps, float scale);
     void fillGaps(LightMaps& maps, bool tell);
     const gl::Texture& mapOf(LightMaps& maps, int size);
@@ -196,6 +199,10 @@ SceneEntry& Pipeline::Impl::sceneEntry(const scene::Scene& scene) {
 Request Pipeline::Impl::withChoice(const Request& request, const PlanFacts& facts, std::string& sentence) {
     Transport wanted = request.transport;
     if (wanted.budgetMs <= 0.0 && wanted.targetError <= 0.0) return request;
+    if (wanted.mode == Mode::Traced) {
+        sentence = wanted.budgetMs > 0.0 ? "as many photons a frame as half of the budget affords" : "the fewest photons, until the error is estimated below the target";
+        return request;
+    }
     if (wanted.mode != Mode::Refined) {
         sentence = "nothing: the published algorithm has no estimate to choose by";
         return request;
@@ -373,15 +380,19 @@ Frame Pipeline::run(const Request& asked) {
     impl.timer.beginFrame();
     const scene::Scene& scene = *asked.scene;
     SceneEntry& entry = impl.sceneEntry(scene);
-    const ModeChoice mode = chooseMode(asked, entry.casters);
-    Request wanted = asked;
-    wanted.transport.mode = mode.mode;
     const View view = cameraView(asked.camera, scene, asked.width, asked.height);
     const int key = keyLight(scene);
+    ModeChoice mode = chooseMode(asked, entry.casters);
+    Request wanted = asked;
+    // Light that was traced while all was at rest stays so while the camera alone moves.
+    wanted.transport.mode = Mode::Traced;
+    const bool resting = mode.traceAtRest && impl.isKept(lightKey(wanted, scene.lights[static_cast<std::size_t>(key)], wanted.transport.photonGrid));
+    if (resting) mode.mode = Mode::Traced, mode.why = "the light has not moved since it was traced exactly";
+    wanted.transport.mode = mode.mode;
     PlanFacts facts = gatherFacts(wanted, scene.lights[static_cast<std::size_t>(key)], view, entry.enclosure);
     facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
     Frame frame;
-    facts.modeReason = mode.why;
+    facts.modeReason = mode.why, facts.refinedCamera = resting && !asked.still;
     const Request request = impl.withChoice(wanted, facts, frame.stats.choice);
     Transport transport = request.transport;
     if (transport.photonGrid == 0 && transport.mode != Mode::Traced) {
@@ -411,7 +422,7 @@ Frame Pipeline::run(const Request& asked) {
     frame.stats.exposureEv = std::log2(scale / unit);
     const int zoom = request.still && !plan.runs("picture_mean") ? 2 : 1;   // pictures that add up have their own anti-aliasing
     impl.cameraSide.run({request, entry.gpu, view, lighting, maps, plan, zoom * request.width, zoom * request.height,
-                         plan.traced ? &entry.exact(scene) : nullptr, 1.0, scale}, impl.timer);
+                         plan.traced ? &entry.exact(scene) : nullptr, maps.convergence ? static_cast<double>(maps.convergence->photons) : 1.0, scale}, impl.timer);
     const bool floats = !plan.runs("present");
     if (!floats) impl.timer.stage("present", [&] { impl.picture(request, maps, request.sample == Sample::U8 ? scale : unit); });
 
@@ -436,6 +447,9 @@ Frame Pipeline::run(const Request& asked) {
     if (request.countResiduals) frame.stats.residuals = maps.residuals;
     frame.stats.error = maps.error;
     frame.stats.convergence = maps.convergence;
+    if (mode.mode != Mode::Traced && mode.traceAtRest && maps.hasMap && !request.wavelengthBands) {
+        frame.stats.convergence = Convergence{.error = maps.error ? maps.error->total : 1.0, .target = targetOf(asked.transport)};
+    }
     frame.stats.photons = maps.photons;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
     frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -183,7 +183,6 @@ RenderPlan makePlan(const PlanFacts& facts, const Request& request) {
     if (request.transport.mode == Mode::Traced) return makeTracedPlan(facts, request);
     RenderPlan plan;
     plan.casters = facts.casters;
-    plan.traced = request.transport.mode == Mode::Traced;
     chooseWavelengths(plan, facts, request);
     const bool caustics = addLightSide(plan, facts, request);
     addCameraSide(plan, facts, request, caustics && !request.wavelengthBands);

@@ -32,6 +32,7 @@ struct PlanFacts {
     double boxShare = 0.0;              // of the picture's pixels, in the boxes of the casters in view
     int mirrors = 0;                    // casters of traced transport only
     std::string modeReason;             // why this transport, where that was left to us
+    bool refinedCamera = false;         // Traced: the camera moves past meshes whose light rests
     bool adding = false;                // Traced: photons are added to the map that is there
     int continuousNodes = 4;            // exact wavelengths that this machine affords a continuous spectrum
 };

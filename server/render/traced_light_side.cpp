@@ -38,19 +38,23 @@ int levelsOf(const Transport& transport) { return transport.filter ? layout::kMo
 
 std::size_t texelsOf(int size) { return static_cast<std::size_t>(size) * static_cast<std::size_t>(size); }
 
-// As many that meet a caster as a square of that side has.
-std::uint64_t firstPhotons(const TracedLightSide::Inputs& in, double met) {
-    const double grid = in.light.transport.photonGrid > 0 ? in.light.transport.photonGrid : in.software ? kFirstSoftware : kFirstHardware;
-    return static_cast<std::uint64_t>(std::ceil(grid * grid / met));
-}
-
-double targetOf(const Transport& transport) { return transport.targetError > 0.0 ? transport.targetError : kTarget; }
-
 void clear(const gl::Buffer& buffer) { glClearNamedBufferData(buffer.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr); }
 
 double wide(const GLuint* words) { return std::ldexp(static_cast<double>(words[1]), 32) + static_cast<double>(words[0]); }
 
 }  // namespace
+
+double targetOf(const Transport& transport) { return transport.targetError > 0.0 ? transport.targetError : kTarget; }
+
+// As many that meet a caster as a square of that side has, or what half of a budget affords.
+std::uint64_t TracedLightSide::firstPhotons(const Inputs& in, double met) const {
+    const Transport& transport = in.light.transport;
+    if (transport.photonGrid == 0 && transport.budgetMs > 0.0 && msPerPhoton_ > 0.0) {
+        return static_cast<std::uint64_t>(std::clamp(0.5 * transport.budgetMs / msPerPhoton_, 1024.0, 1048576.0));
+    }
+    const double grid = transport.photonGrid > 0 ? transport.photonGrid : in.software ? kFirstSoftware : kFirstHardware;
+    return static_cast<std::uint64_t>(std::ceil(grid * grid / met));
+}
 
 TracedLightSide::Fit TracedLightSide::fit(const Inputs& all) {
     const LightSide::Inputs& in = all.light;
@@ -144,7 +148,7 @@ void TracedLightSide::begin(const Inputs& all, const Fit& fit, gl::StageTimer& t
 
 void TracedLightSide::add(const Inputs& all, gl::StageTimer& timer, LightMaps& out) {
     ExactSums& sums = *out.exact;
-    const double afforded = sums.msPerPhoton > 0.0 ? kAddMs / sums.msPerPhoton : 0.0;
+    const double afforded = msPerPhoton_ > 0.0 ? kAddMs / msPerPhoton_ : 0.0;
     const std::uint64_t photons = std::max<std::uint64_t>(static_cast<std::uint64_t>(afforded), 1024);
     trace(all, std::min(photons, sums.milestone - sums.photons), 0, static_cast<int>(sums.entries.nm.size()), timer, out);
     resolve(all, timer, out);
@@ -293,7 +297,7 @@ void TracedLightSide::collect(const Inputs& all, LightMaps& out) {
                                        .grain = kRoughnessUnit * rows[layout::kLedgerGrain] / deposited,
                                        .spectralStep = 0.0});
         }
-        sums.msPerPhoton = 1e-6 * static_cast<double>(nowNs() - startedNs_) / static_cast<double>(tracedNow_);
+        msPerPhoton_ = 1e-6 * static_cast<double>(nowNs() - startedNs_) / static_cast<double>(tracedNow_);
         Convergence& done = out.convergence.emplace();
         done.photons = sums.photons;
         done.error = out.error ? out.error->total : 0.0;

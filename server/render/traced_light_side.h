@@ -36,8 +36,10 @@ struct ExactSums {
     std::uint64_t photons = 0;             // sent out so far, whether or not they met their caster
     std::uint64_t milestone = 0;           // photons after which it is next asked whether that is enough
     std::array<double, layout::kLedgerRows> ledger{};   // in photons
-    double msPerPhoton = 0.0;              // of the last frame
 };
+
+// Where convergence ends: relative L1, 1% unless asked for.
+double targetOf(const Transport& transport);
 
 class TracedLightSide {
    public:
@@ -68,6 +70,7 @@ class TracedLightSide {
     void collect(const Inputs& in, LightMaps& out);
 
    private:
+    std::uint64_t firstPhotons(const Inputs& in, double met) const;
     void trace(const Inputs& in, std::uint64_t photons, int firstEntry, int entries, gl::StageTimer& timer, LightMaps& out);
     void resolve(const Inputs& in, gl::StageTimer& timer, LightMaps& out);
     void traceBands(const Inputs& in, std::uint64_t photons, gl::StageTimer& timer, LightMaps& out);
@@ -81,6 +84,7 @@ class TracedLightSide {
     std::uint64_t tracedNow_ = 0;          // photons of this frame
     double ledgerPerFlux_ = 1.0, ledgerPerFixed_ = 1.0;
     std::uint64_t startedNs_ = 0;          // when this frame's photons were sent
+    double msPerPhoton_ = 0.0;             // of the newest frame that traced
 };
 
 }  // namespace caustream::render

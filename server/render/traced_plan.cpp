@@ -18,7 +18,7 @@ std::string whyNoCaustic(const PlanFacts& facts) {
 
 RenderPlan makeTracedPlan(const PlanFacts& facts, const Request& request) {
     RenderPlan plan;
-    plan.traced = true;
+    plan.traced = !facts.refinedCamera;
     plan.casters = facts.casters + facts.mirrors;
     chooseWavelengths(plan, facts, request);
     const Transport& transport = request.transport;

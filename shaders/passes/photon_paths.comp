@@ -9,6 +9,7 @@
 #include "common/surfaces.glsl"
 #include "common/interfaces.glsl"
 #include "common/lattice.glsl"
+#include "common/residuals.glsl"
 #include "common/receiver.glsl"
 
 layout(local_size_x = kGroupSize) in;

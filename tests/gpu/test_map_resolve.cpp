@@ -20,7 +20,7 @@ class MapResolveTest : public CameraPass {
         const gl::Texture receivers(kSize, kSize, GL_R32F, "receivers");
         fillTexture(receivers, std::vector<glm::vec4>(kSize * kSize, glm::vec4(0.25f)));
         gl::Texture concentration;
-        render::MapResolve(shaders_).run({.map = map, .view = view, .receivers = receivers, .size = kSize, .levels = levels, .firstTexel = 0,
+        render::MapResolve(shaders_).run({.map = &map, .view = view, .receivers = receivers, .size = kSize, .levels = levels, .firstTexel = 0,
                                           .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = fluxPerFixed, .ledgerPerFixed = 1.0, .judged = true},
                                          concentration, ledger);
         glMemoryBarrier(GL_ALL_BARRIER_BITS);   // map and ledger -> read-back

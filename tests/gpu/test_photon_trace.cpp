@@ -73,7 +73,7 @@ class PhotonTraceTest : public CameraPass {
         Result result{readWords(map), {}, {}, readWords(residuals)};
         if (setup.xyz) {
             gl::Texture concentration;
-            render::MapResolve(shaders_).run({.map = map, .view = setup.map, .receivers = receivers, .size = setup.mapSize, .levels = setup.levels,
+            render::MapResolve(shaders_).run({.map = &map, .view = setup.map, .receivers = receivers, .size = setup.mapSize, .levels = setup.levels,
                                               .firstTexel = 0, .xyzToRgb = glm::mat3(1.0f), .fluxPerFixed = 1.0 / kFixedPerFlux,
                                               .ledgerPerFixed = kLedgerPerFlux / kFixedPerFlux, .judged = false},
                                              concentration, ledger);
