@@ -56,7 +56,7 @@ Sample sampleOf(const render::Frame& frame) {
 
 render::Mode modeOf(protocol::TransportMode wanted) {
     switch (wanted) {
-        case protocol::TransportMode::Auto: return render::Mode::Refined;
+        case protocol::TransportMode::Auto: return render::Mode::Auto;
         case protocol::TransportMode::Traced: return render::Mode::Traced;
         case protocol::TransportMode::Refined: return render::Mode::Refined;
         case protocol::TransportMode::Thesis: break;
