@@ -18,6 +18,7 @@
 #include "render/exact_surfaces.h"
 #include "scene/builtin_scenes.h"
 #include "tests/gpu/shader_folder.h"
+#include "tests/gpu/synthetic_scene.h"
 
 namespace caustream::bench {
 
@@ -73,6 +74,18 @@ double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// A ball of 1e6 triangles.
+tl::expected<scene::Scene, scene::LoadError> aMillionTriangles() {
+    scene::Scene scene;
+    scene.materials.emplace_back().caster = true;
+    tests::SyntheticScene made;
+    made.addSphere(0, {0, 0.5f, 0}, 0.4f, 500);
+    made.edit().casterBounds = made.edit().bounds;
+    scene.geometry = made.geometry();
+    scene.lights.emplace_back().position = {0.5f, 2, 0.3f};
+    return scene;
+}
+
 // From the light to a disc around the casters.
 std::vector<glm::vec4> lightRays(const scene::Scene& scene, int count) {
     std::mt19937 random(1);
@@ -117,7 +130,7 @@ void measureSegments(const SegmentOptions& options) {
                 context->renderer().c_str(), options.photons, options.wavelengths, options.bounces, options.rounds, calibrationMs());
     std::printf("%-10s %-9s %9s %10s %9s %12s %14s  %s\n", "scene", "shaders", "build, ms", "segments", "whole, ms", "ns a segment", "CPU ns", "casters");
     for (const std::string& name : options.scenes) {
-        const auto scene = scene::loadBuiltin(name);
+        const auto scene = name == "million" ? aMillionTriangles() : scene::loadBuiltin(name);
         if (!scene) throw Error(scene.error().message);
         const render::ExactSurfaces surfaces(*scene);
         const std::vector<glm::vec4> rays = lightRays(*scene, options.photons);
@@ -165,7 +178,7 @@ void addSegments(CLI::App& app) {
     const auto options = std::make_shared<SegmentOptions>();
     CLI::App* command = app.add_subcommand("segments", "what a ray segment of traced transport costs, caster by caster");
     command->add_option("--gpu", options->gpu, "as for caustream-server")->capture_default_str();
-    command->add_option("--scenes", options->scenes, "built-in scenes")->delimiter(',');
+    command->add_option("--scenes", options->scenes, "built-in scenes, or \"million\": a ball of 1e6 triangles")->delimiter(',');
     command->add_option("--photons", options->photons)->check(CLI::Range(1, 10'000'000))->capture_default_str();
     command->add_option("--wavelengths", options->wavelengths)->check(CLI::Range(1, 64))->capture_default_str();
     command->add_option("--bounces", options->bounces, "internal reflections")->check(CLI::Range(0, 1000))->capture_default_str();

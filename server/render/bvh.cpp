@@ -25,7 +25,7 @@ struct Node {
     std::array<scene::Bounds, 2> boxes{};   // the children's: Embree tells them before the children
     std::array<Node*, 2> children{};        // null: a leaf
     std::array<std::uint32_t, 1u << Bvh::kLeafBits> triangles{};
-    std::uint32_t count = 0, place = 0; // place: of the first triangle in Bvh::triangles
+    std::uint32_t count = 0;
 };
 
 template <auto Release>
@@ -75,16 +75,12 @@ std::vector<RTCBuildPrimitive> primitivesOf(std::span<const Triangle> triangles)
 
 class Flattening {
  public:
-    Flattening(Bvh& bvh, Node& root, const scene::Bounds& box) : bvh_(bvh) {
+    Flattening(Bvh& bvh, const Node& root, const scene::Bounds& box) : bvh_(bvh) {
         const glm::vec3 extent = box.max - box.min;
         const float least = std::max(1e-3f * std::max({extent.x, extent.y, extent.z}), 1e-30f);
         bvh.low = box.min;
         bvh.cellsPerM = kCells / glm::max(extent, glm::vec3(least));
-        for (order_ = 0; order_ < Bvh::kOrders; ++order_) {
-            first_ = bvh.nodes.size();
-            walk(root, box);
-            bvh.nodesPerOrder = static_cast<std::uint32_t>(bvh.nodes.size() - first_);
-        }
+        walk(root, box);
     }
 
  private:
@@ -94,40 +90,27 @@ class Flattening {
         for (int k = 0; k < 3; ++k) {
             const float low = std::floor((box.min[k] - bvh_.low[k]) * bvh_.cellsPerM[k]);
             const float high = std::ceil((box.max[k] - bvh_.low[k]) * bvh_.cellsPerM[k]) + 2.0f;
-            auto near = static_cast<std::uint32_t>(std::clamp(low, 0.0f, 65535.0f));
-            auto far = static_cast<std::uint32_t>(std::clamp(high, 0.0f, 65535.0f));
-            if (order_ >> k & 1) std::swap(near, far);
-            node[k] = near | far << 16;
+            node[k] = static_cast<std::uint32_t>(std::clamp(low, 0.0f, 65535.0f)) |
+                      static_cast<std::uint32_t>(std::clamp(high, 0.0f, 65535.0f)) << 16;
         }
         return node;
     }
 
-    // Leaves keep the places that their triangles have in the first order.
-    void walk(Node& node, const scene::Bounds& box) {
+    void walk(const Node& node, const scene::Bounds& box) {
         const std::size_t at = bvh_.nodes.size();
         bvh_.nodes.push_back(boxed(box));
         if (!node.children[0]) {
-            if (order_ == 0) {
-                node.place = static_cast<std::uint32_t>(bvh_.triangles.size());
-                bvh_.triangles.insert(bvh_.triangles.end(), node.triangles.begin(), node.triangles.begin() + node.count);
-            }
-            bvh_.nodes[at].w = Bvh::kLeaf | node.place << Bvh::kLeafBits | (node.count - 1);
+            const auto place = static_cast<std::uint32_t>(bvh_.triangles.size());
+            bvh_.triangles.insert(bvh_.triangles.end(), node.triangles.begin(), node.triangles.begin() + node.count);
+            bvh_.nodes[at].w = Bvh::kLeaf | place << Bvh::kLeafBits | (node.count - 1);
             return;
         }
-        const glm::vec3 apart = node.boxes[1].centre() - node.boxes[0].centre();
-        int axis = 0;
-        for (int k = 1; k < 3; ++k) {
-            if (std::abs(apart[k]) > std::abs(apart[axis])) axis = k;
-        }
-        const std::size_t near = (apart[axis] < 0.0f) != ((order_ >> axis & 1) != 0) ? 1 : 0;
-        walk(*node.children[near], node.boxes[near]);
-        walk(*node.children[1 - near], node.boxes[1 - near]);
-        bvh_.nodes[at].w = static_cast<std::uint32_t>(bvh_.nodes.size() - first_);
+        walk(*node.children[0], node.boxes[0]);
+        walk(*node.children[1], node.boxes[1]);
+        bvh_.nodes[at].w = static_cast<std::uint32_t>(bvh_.nodes.size());
     }
 
     Bvh& bvh_;
-    int order_ = 0;
-    std::size_t first_ = 0;
 };
 
 }  // namespace

@@ -15,16 +15,13 @@ struct Triangle {
 };
 
 struct Bvh {
-    static constexpr int kOrders = 8;
     static constexpr int kLeafBits = 3;              // most triangles of a leaf: 8
     static constexpr std::uint32_t kLeaf = 0x80000000u;
 
-    // kOrders times `nodesPerOrder`. Order o is for rays whose component k is negative where bit k of o is set. xyz: the
-    // near side of the box (of such rays) in the low 16 bits, the far side in the high ones, in cells of the grid below.
-    // w: where to go on when the box is missed, counted from the order's first node; or kLeaf | first << kLeafBits |
-    // count - 1, triangles in the order of `triangles` (then the next node is where to go on).
+    // xyz: the box, low sides in the low 16 bits, high sides in the high ones, in cells of the grid below. w: the node to
+    // go on with when the box is missed; or kLeaf | first << kLeafBits | count - 1, triangles in the order of `triangles`
+    // (then the next node is where to go on).
     std::vector<glm::uvec4> nodes;
-    std::uint32_t nodesPerOrder = 0;
     std::vector<std::uint32_t> triangles;            // the leaves' triangles: numbers of those given
     glm::vec3 low{0.0f}, cellsPerM{1.0f};            // cell = 1 + (position - low) * cellsPerM
 };

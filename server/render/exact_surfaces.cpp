@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "error.h"
 #include "render/bvh.h"
 #include "render/convex_planes.h"
 
@@ -35,7 +36,7 @@ struct Numbered {
 struct ExactSurfaces::Hierarchy {
     gl::Buffer nodes, corners, normals;
     gl::BufferTexture nodesView, cornersView, normalsView;
-    int nodesPerOrder = 0;
+    int nodeCount = 0;
     glm::vec3 low{0.0f}, cellsPerM{1.0f};
 
     Hierarchy(const scene::Geometry& geometry, const std::vector<Numbered>& objects, bool withNormals) {
@@ -51,7 +52,13 @@ struct ExactSurfaces::Hierarchy {
             }
         }
         const Bvh bvh = buildBvh(triangles);
-        nodesPerOrder = static_cast<int>(bvh.nodesPerOrder);
+        GLint most = 0;
+        glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+        if (3 * bvh.triangles.size() > static_cast<std::size_t>(most)) {
+            throw Error("exact surfaces of " + std::to_string(bvh.triangles.size()) + " triangles do not fit this GPU's buffer textures of " +
+                        std::to_string(most) + " texels; use transport.mode refined, or fewer triangles");
+        }
+        nodeCount = static_cast<int>(bvh.nodes.size());
         low = bvh.low;
         cellsPerM = bvh.cellsPerM;
 
@@ -157,10 +164,10 @@ void ExactSurfaces::bind(const gl::Uniforms& uniforms, GLuint firstUnit, bool re
     uniforms.set("u_exactCasters", static_cast<int>(casters_.size()))
         .set("u_firstTriangle", planeTexels_)
         .set("u_exactReach", reachM_)
-        .set("u_mesh.nodes", meshes_->nodesPerOrder)
+        .set("u_mesh.nodes", meshes_->nodeCount)
         .set("u_mesh.low", meshes_->low)
         .set("u_mesh.cellsPerM", meshes_->cellsPerM)
-        .set("u_ground.nodes", ground.nodesPerOrder)
+        .set("u_ground.nodes", ground.nodeCount)
         .set("u_ground.low", ground.low)
         .set("u_ground.cellsPerM", ground.cellsPerM);
 }

@@ -29,7 +29,8 @@ class ExactSurfaces {
  public:
     static constexpr GLuint kUnits = 6;
 
-    // Builds the casters' hierarchy; the receivers' is built when first bound. Throws Error when Embree does not start.
+    // Builds the casters' hierarchy; the receivers' is built when first bound. Throws Error when Embree does not start or
+    // the triangles do not fit.
     explicit ExactSurfaces(const scene::Scene& scene);
     ~ExactSurfaces();
 

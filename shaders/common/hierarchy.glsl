@@ -1,11 +1,12 @@
 // Nearest triangle along a ray, through a hierarchy of boxes that needs no stack (server/render/bvh.h): a node that is
 // missed says where to go on, so a ray looks at each node once at most and always ends.
 
-struct Hierarchy { int nodes; vec3 low; vec3 cellsPerM; };   // nodes of one order; grid of the boxes
+struct Hierarchy { int nodes; vec3 low; vec3 cellsPerM; };   // grid of the boxes
 
-struct Met { float t; int triangle; float number; };         // triangle -1: none; number: of the caster or the object
+struct Met { float t; int triangle; float number; };         // triangle -1: none; number: of the caster or the object, or kLost
 
 const ivec4 kAnywhere = ivec4(-2);        // not known what the ray is in: every side of a surface counts
+const int kLost = -2;                     // instead of a caster or object: the driver ended the walk before its end
 const uint kLeaf = 0x80000000u;
 const float kSlack = 1.0000004;           // Ize 2013, Robust BVH Ray Traversal: the roundings of a box's distances
 
@@ -39,20 +40,19 @@ bool meetTriangle(Sheared ray, vec3 a, vec3 b, vec3 c, out float t, out float de
 // ray is in already and backs of what it is not in are passed, and so is triangle `from`.
 void meetHierarchy(usamplerBuffer nodes, samplerBuffer corners, Hierarchy hierarchy, vec3 origin, vec3 direction, float least,
                    int from, ivec4 inside, inout Met met) {
-    bvec3 back = lessThan(direction, vec3(0.0));
-    vec3 way = mix(max(direction, vec3(1e-20)), min(direction, vec3(-1e-20)), back);
+    vec3 way = mix(max(direction, vec3(1e-20)), min(direction, vec3(-1e-20)), lessThan(direction, vec3(0.0)));
     vec3 start = (origin - hierarchy.low) * hierarchy.cellsPerM + 1.0, perCell = 1.0 / (way * hierarchy.cellsPerM);
-    int first = (int(back.x) + 2 * int(back.y) + 4 * int(back.z)) * hierarchy.nodes;
     Sheared ray = shearedAlong(direction);
 
-    int node = 0;
+    int node = 0, triangle = 0, end = 0;
     while (node < hierarchy.nodes) {
         // Boxes up to a leaf
         bool found = false;
         uint link = 0u;
         while (!found && node < hierarchy.nodes) {
-            uvec4 box = texelFetch(nodes, first + node);
-            vec3 enters = (vec3(ivec3(box.xyz & 0xffffu)) - start) * perCell, leaves = (vec3(ivec3(box.xyz >> 16)) - start) * perCell;
+            uvec4 box = texelFetch(nodes, node);
+            vec3 low = (vec3(ivec3(box.xyz & 0xffffu)) - start) * perCell, high = (vec3(ivec3(box.xyz >> 16)) - start) * perCell;
+            vec3 enters = min(low, high), leaves = max(low, high);
             float last = min(min(leaves.x, leaves.y), min(leaves.z, met.t));
             bool meets = max(max(enters.x, enters.y), max(enters.z, least)) <= last * kSlack;
             bool leaf = (box.w & kLeaf) != 0u;
@@ -62,7 +62,8 @@ void meetHierarchy(usamplerBuffer nodes, samplerBuffer corners, Hierarchy hierar
         }
 
         // Its triangles
-        int triangle = int((link & ~kLeaf) >> 3), end = found ? triangle + int(link & 7u) + 1 : 0;
+        triangle = int((link & ~kLeaf) >> 3);
+        end = found ? triangle + int(link & 7u) + 1 : 0;
         for (; triangle < end; ++triangle) {
             vec4 a = texelFetch(corners, 3 * triangle), b = texelFetch(corners, 3 * triangle + 1), c = texelFetch(corners, 3 * triangle + 2);
             float t, determinant;
@@ -72,4 +73,7 @@ void meetHierarchy(usamplerBuffer nodes, samplerBuffer corners, Hierarchy hierar
             if (hit && t > least && t < met.t && triangle != from && (front != within || inside == kAnywhere)) met = Met(t, triangle, a.w);
         }
     }
+
+    // Mesa's software renderer ends all loops after 65,535 turns, of all loops of an invocation together.
+    if (node < hierarchy.nodes || triangle < end) met = Met(met.t, -1, float(kLost));
 }

@@ -4,7 +4,7 @@
 
 struct Surface {
     float t;
-    int caster;        // -1: nothing met
+    int caster;        // -1: nothing met; kLost: not known
     int piece;         // plane or triangle, a number of its own among all casters'
     vec3 point;        // on the piece itself, nearer than origin + t * direction is
     vec3 geometric;    // unit, outward
@@ -134,6 +134,7 @@ Surface nearestSurface(vec3 origin, vec3 direction, int from, ivec4 inside) {
     Met met = Met(t, -1, -1.0);
     meetHierarchy(u_meshNodes, u_meshCorners, u_mesh, origin, direction, least, from - u_firstTriangle, inside, met);
     if (met.triangle >= 0) return triangleMet(origin, direction, met);
+    if (int(met.number) == kLost) return Surface(kNowhere, kLost, -1, origin, vec3(0.0), vec3(0.0));
 #endif
 #if PLANES
     if (caster >= 0) return planeMet(origin, direction, caster, piece, t);
@@ -146,7 +147,7 @@ Surface nearestSurface(vec3 origin, vec3 direction, int from) { return nearestSu
 #if EXACT_RECEIVERS
 struct Ground {
     float t;
-    int object;        // index into Geometry::objects; -1: nothing
+    int object;        // index into Geometry::objects; -1: nothing; kLost: not known
     vec3 geometric;    // unit, outward; either side is met
 };
 
@@ -154,7 +155,7 @@ struct Ground {
 Ground nearestReceiver(vec3 origin, vec3 direction) {
     Met met = Met(kNowhere, -1, -1.0);
     meetHierarchy(u_groundNodes, u_groundCorners, u_ground, origin, direction, -roundingAround(origin), -1, kAnywhere, met);
-    if (met.triangle < 0) return Ground(kNowhere, -1, vec3(0.0));
+    if (met.triangle < 0) return Ground(kNowhere, int(met.number), vec3(0.0));
     vec3 a = texelFetch(u_groundCorners, 3 * met.triangle).xyz;
     vec3 b = texelFetch(u_groundCorners, 3 * met.triangle + 1).xyz, c = texelFetch(u_groundCorners, 3 * met.triangle + 2).xyz;
     return Ground(max(met.t, 0.0), int(met.number), normalize(cross(b - a, c - a)));

@@ -195,6 +195,25 @@ TEST_F(ExactSurfacesHold, ForThirtyTwoInternalReflections) {
     }
 }
 
+// Software GL ends an invocation's loops after 65,535 turns; from then on nothing is known, and nothing is made up.
+TEST_F(ExactSurfacesHold, OrSayThatTheyAreLost) {
+    const scene::Scene scene = builtin("sphere");
+    const render::ExactSurfaces surfaces(scene);
+    const std::string work =
+        "    int met = 0, lost = 0, wrong = 0;\n"
+        "    for (int k = 0; k < 4000; ++k) {\n"
+        "        vec3 way = normalize(vec3(sin(float(k)), cos(1.7 * float(k)), sin(0.3 * float(k) + 1.0)) + 1e-3);\n"
+        "        int caster = nearestSurface(a.xyz, way, -1, ivec4(0, ivec3(0x7fffffff))).caster;\n"
+        "        if (caster == 0) ++met;\n        else if (caster == kLost) ++lost;\n        else ++wrong;\n"
+        "    }\n"
+        "    outputs[i] = vec4(met, lost, wrong, 0);\n";
+    const auto found = compute(surfaces, "", work, {glm::vec4(scene.geometry->casterBounds.centre(), 0), glm::vec4(0)}, 1);
+    EXPECT_GT(found[0].x, 300.0f);
+    EXPECT_EQ(found[0].z, 0.0f) << found[0].x << " met, " << found[0].y << " lost";
+    RecordProperty("met", static_cast<int>(found[0].x));
+    RecordProperty("lost", static_cast<int>(found[0].y));
+}
+
 // Which surfaces a straight ray meets, with the casters it is in kept: caster + 1, negative when it is left.
 class ExactSurfacesInOrder : public ExactSurfacesTest {
  protected:
