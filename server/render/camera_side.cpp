@@ -46,7 +46,11 @@ void CameraSide::rest(const Inputs& in, gl::StageTimer& timer) {
     view.shift = 2.0f * sample.shift / glm::vec2(in.width, in.height);
     const Inputs shifted{in.request, in.gpu, view, in.lighting, in.maps, in.plan, in.width, in.height, in.surfaces, in.photons, in.scale};
     CameraPaths::Settings settings = kAtRest;
-    if (!lone) settings.rays = 1, settings.branches = 0;   // a path each: its steps are many, and others follow
+    if (!lone) {
+        // A ray's steps are many, and more rays follow; less is asked of several casters while photons take their time, too.
+        settings.rays = 1;
+        settings.branches = in.surfaces->casters().size() == 1 || !in.plan.runs("photon_paths") ? 2 : 1;
+    }
     settings.bounces = in.request.transport.bounces;
     settings.rotation = sample.rotation;
     settings.sample = progress_.samples() + 1;
