@@ -129,13 +129,14 @@ std::string Report::line(const std::string& file, const Frame& last, const Sessi
                   last.image.bands, last.header.renderUs / 1000.0);
     std::string line = file + text;
     const auto& stats = session.stats();
-    if (stats && stats->convergence) {
+    if (stats && stats->convergence && stats->convergence->photons > 0) {
         line += ", " + connection::convergenceText(*stats->convergence);
         const bool there = last.header.flags & protocol::kFrameConverged;
         line += there ? ", converged" : options_.converge ? "" : "; --converge waits for the rest";
     } else if (stats && stats->error) {
         std::snprintf(text, sizeof text, ", map error about %.1f%%", 100.0 * stats->error->total);
         line += text;
+        if (stats->convergence) line += "; --converge traces it exactly";
     }
     if (stats && !stats->choice.empty()) line += "; " + stats->choice;
     return line;

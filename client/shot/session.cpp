@@ -41,10 +41,16 @@ void Session::take(const connection::Event& event) {
 template <class Ready>
 Session::Done Session::waitUntil(const std::string& what, const Ready& ready) {
     const auto last = std::chrono::steady_clock::now() + timeout_;
-    for (;;) {
+    const auto takeAll = [this] {
         for (const auto& event : connection_.takeEvents()) take(event);
+    };
+    for (;;) {
+        takeAll();
         if (failure_) return tl::make_unexpected(*failure_);
-        if (ready()) return {};
+        if (ready()) {
+            takeAll();  // what came before a frame, but after the look above: its statistics
+            return {};
+        }
         if (std::chrono::steady_clock::now() > last)
             return tl::make_unexpected("waited " + std::to_string(timeout_.count()) + " s for " + what + " from " +
                                        where() + "; try --timeout");

@@ -389,6 +389,7 @@ Frame Pipeline::run(const Request& asked) {
     const bool resting = mode.traceAtRest && impl.isKept(lightKey(wanted, scene.lights[static_cast<std::size_t>(key)], wanted.transport.photonGrid));
     if (resting) mode.mode = Mode::Traced, mode.why = "the light has not moved since it was traced exactly";
     wanted.transport.mode = mode.mode;
+    if (mode.mode != Mode::Traced && mode.traceAtRest) wanted.transport.targetError = 0.0;   // which is where it converges to
     PlanFacts facts = gatherFacts(wanted, scene.lights[static_cast<std::size_t>(key)], view, entry.enclosure);
     facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
     Frame frame;
@@ -442,6 +443,7 @@ Frame Pipeline::run(const Request& asked) {
     frame.mapHash = maps.mapHash;
     for (const auto& row : impl.timer.rows()) frame.stats.stages.push_back({row.name, row.ms});
     const bool traced = plan.runs("photon_trace");
+    const bool addsUp = plan.runs("picture_mean");
     frame.stats.plan = std::move(plan.entries);
     frame.stats.ledger = maps.ledger;
     if (request.countResiduals) frame.stats.residuals = maps.residuals;
@@ -449,6 +451,12 @@ Frame Pipeline::run(const Request& asked) {
     frame.stats.convergence = maps.convergence;
     if (mode.mode != Mode::Traced && mode.traceAtRest && maps.hasMap && !request.wavelengthBands) {
         frame.stats.convergence = Convergence{.error = maps.error ? maps.error->total : 1.0, .target = targetOf(asked.transport)};
+    }
+    if (request.target == Target::Composite && frame.stats.convergence) {
+        // The picture has to be there, too: its samples, and the passage from the moving one.
+        const double picture = addsUp ? impl.cameraSide.progress().progress() : request.converge ? 1.0 : 0.0;
+        frame.stats.convergence->converged = frame.stats.convergence->converged && picture >= 1.0;
+        frame.stats.convergence->progress = std::min(frame.stats.convergence->progress, picture);
     }
     frame.stats.photons = maps.photons;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());

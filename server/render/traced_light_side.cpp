@@ -298,6 +298,7 @@ void TracedLightSide::collect(const Inputs& all, LightMaps& out) {
                                        .spectralStep = 0.0});
         }
         msPerPhoton_ = 1e-6 * static_cast<double>(nowNs() - startedNs_) / static_cast<double>(tracedNow_);
+        const double before = out.convergence ? out.convergence->progress : 0.0;
         Convergence& done = out.convergence.emplace();
         done.photons = sums.photons;
         done.error = out.error ? out.error->total : 0.0;
@@ -306,7 +307,8 @@ void TracedLightSide::collect(const Inputs& all, LightMaps& out) {
         if (asked) sums.milestone = static_cast<std::uint64_t>(std::ceil(kMilestone * static_cast<double>(sums.photons)));
         done.converged = asked && done.error <= done.target;
         // The error of evenly spread photons falls about as the square root of the cube of their number's.
-        done.progress = done.converged ? 1.0 : std::min(std::pow(done.target / std::max(done.error, 1e-9), 4.0 / 3.0), 0.99);
+        // What another estimate takes back of it comes again.
+        done.progress = done.converged ? 1.0 : std::max(before, std::min(std::pow(done.target / std::max(done.error, 1e-9), 4.0 / 3.0), 0.99));
     }
     out.photons = static_cast<std::uint32_t>(std::min(sums.ledger[layout::kLedgerPhotons], 4294967295.0));
     out.ledger.onCasters = sums.ledger[layout::kLedgerOnCasters] * fluxPerPhoton;

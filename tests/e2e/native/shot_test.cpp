@@ -156,6 +156,41 @@ TEST_F(Shot, SameStateSameMap) {
     EXPECT_EQ(hashes[0], hashes[2]);
 }
 
+TEST_F(Shot, WaitsUntilAPictureHasConverged) {
+    const std::vector<std::string> traced = {"--scene", "gem", "--width", "96", "--height", "96", "--set", "transport.mode=traced",
+                                             "--set", "transport.map_size=256", "--set", "transport.target_error=0.08"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), traced.begin(), traced.end());
+        return shoot(more);
+    };
+    const std::string quick = folder_ / "quick.png", patient = folder_ / "patient.png", again = folder_ / "again.npy";
+    const Result first = with({"--out", quick});
+    ASSERT_EQ(first.exitCode, 0) << first.err;
+    EXPECT_THAT(first.out, HasSubstr("--converge waits for the rest"));
+    const Result result = with({"--converge", "--out", patient});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("photons, error about"));
+    EXPECT_THAT(result.out, HasSubstr(", converged"));
+    EXPECT_EQ(result.err, "") << "no progress bar where nobody looks";
+
+    const json before = readJson(quick + ".json"), report = readJson(patient + ".json");
+    EXPECT_EQ(report["header"]["flags"], 5) << "STILL and CONVERGED";
+    const json reached = report["server_stats"]["convergence"];
+    EXPECT_EQ(reached["converged"], true);
+    EXPECT_LE(reached["error"], 0.08);
+    EXPECT_GT(reached["photons"], before["server_stats"]["convergence"]["photons"]);
+    EXPECT_NE(report["map_hash"], before["map_hash"]);
+    EXPECT_GT(readPng(patient).quantile(0.999), 100.0);
+
+    // What has converged for one is there for the next.
+    ASSERT_EQ(with({"--converge", "--target", "spectral", "--out", again}).exitCode, 0);
+    EXPECT_EQ(readJson(again + ".json")["map_hash"], report["map_hash"]);
+
+    // And what has nothing to converge comes at once.
+    const Result refined = shoot({"--scene", "sphere", "--converge", "--set", "transport.mode=refined", "--target", "spectral", "--out", again});
+    EXPECT_EQ(refined.exitCode, 0) << refined.err;
+}
+
 TEST_F(Shot, SaysWhatIsWrongInOneLine) {
     const std::string file = folder_ / "none.png";
     expectOneLine(shoot({"--scene", "sphere"}), "--out");
@@ -168,6 +203,7 @@ TEST_F(Shot, SaysWhatIsWrongInOneLine) {
     expectOneLine(shoot({"--out", file, "--set", "lights.nobody.position=[0,1,0]"}), "no such name");
     expectOneLine(shoot({"--out", file, "--target", "no_such_pass"}), "no_such_pass");
     expectOneLine(shoot({"--out", file, "--width", "7"}), "--width");
+    expectOneLine(shoot({"--out", file, "--converge", "--moving"}), "--converge");
     EXPECT_FALSE(std::filesystem::exists(file));
 
     std::ofstream(folder_ / "cut.glb") << "glTF";

@@ -60,13 +60,27 @@ class View : public testing::Test {
     Server server_;
     Display display_{kWidth, kHeight};
     TemporaryFolder folder_;
-    Background view_{CAUSTREAM_BIN "/caustream-view",
-                     {"--url", server_.url(), "--scene", "sphere", "--save-folder", folder_.path, "--width",
-                      std::to_string(kWidth), "--height", std::to_string(kHeight)},
-                     display_.environment()};
+    Background open(const std::string& scene, const std::vector<std::string>& settings) {
+        std::vector<std::string> arguments = {"--url", server_.url(), "--scene", scene, "--save-folder", folder_.path, "--width",
+                                              std::to_string(kWidth), "--height", std::to_string(kHeight)};
+        for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+        return {CAUSTREAM_BIN "/caustream-view", arguments, display_.environment()};
+    }
 };
 
+// How far the thin bar at the picture's lower edge goes, 0..1; -1: there is none.
+double progressOf(const Pixels& picture) {
+    const auto* row = &picture.values[static_cast<std::size_t>(3 * (picture.height - 1) * picture.width)];
+    const auto isBar = [&](int x) {
+        return std::abs(row[3 * x] - 255) < 40 && std::abs(row[3 * x + 1] - 181) < 40 && row[3 * x + 2] < 130;
+    };
+    int length = 0;
+    while (length < picture.width && isBar(length)) ++length;
+    return length > 0 ? static_cast<double>(length) / picture.width : -1.0;
+}
+
 TEST_F(View, ADraggedLightMovesTheCausticTheOtherWay) {
+    const Background view = open("sphere", {"transport.mode=refined"});
     const Pixels first = settled(isLit);
     ASSERT_TRUE(isLit(first)) << "no picture came";
     const Centroid start = causticOf(first);
@@ -97,10 +111,27 @@ TEST_F(View, ADraggedLightMovesTheCausticTheOtherWay) {
     EXPECT_GT(difference(orbited, third), 1.0);
 }
 
+TEST_F(View, ABarGrowsWhileThePictureConvergesAndGoesWhenItHas) {
+    const Background view = open("gem", {"transport.mode=traced", "transport.target_error=0.08", "transport.map_size=256"});
+    double first = -1.0, longest = -1.0;
+    bool gone = false;
+    for (int i = 0; i < 900 && !gone; ++i) {
+        std::this_thread::sleep_for(100ms);
+        const double now = progressOf(pictureOf(display_.look()));
+        if (first < 0.0) first = now;
+        longest = std::max(longest, now);
+        gone = longest > 0.0 && now < 0.0;
+    }
+    EXPECT_GT(first, 0.0) << "there was no bar";
+    EXPECT_GT(longest, first) << "it did not grow";
+    EXPECT_TRUE(gone) << "it stayed";
+}
+
 TEST_F(View, StaysSmallAndEndsWhenAsked) {
+    Background view = open("sphere", {"transport.mode=refined"});
     ASSERT_TRUE(isLit(settled(isLit))) << "no picture came";
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    std::ifstream status("/proc/" + std::to_string(view_.pid()) + "/status");
+    std::ifstream status("/proc/" + std::to_string(view.pid()) + "/status");
     std::stringstream text;
     text << status.rdbuf();
     const auto at = text.str().find("VmRSS:");
@@ -109,7 +140,7 @@ TEST_F(View, StaysSmallAndEndsWhenAsked) {
 #endif
     display_.hand({"mousemove", "200", "200"});
     display_.hand({"key", "Escape"});
-    EXPECT_TRUE(view_.ends());
+    EXPECT_TRUE(view.ends());
 }
 
 TEST(ViewArguments, AreCheckedInOneLine) {

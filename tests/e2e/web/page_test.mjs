@@ -26,6 +26,7 @@ async function check(what, action) {
 
 await check('the page connects and shows a picture', async () => {
     await viewer.until(() => viewer.frames > 0, 'the first frame');
+    await page.selectOption('#mode', 'refined');    // which is at rest after one frame more
     await viewer.change(() => page.selectOption('#scene', builtin('sphere')));
     const picture = await viewer.look();
     const dark = picture.quantile(0.05), bright = picture.quantile(0.95);
@@ -104,6 +105,24 @@ await check('the spectral map is shown, in colour and one band of it', async () 
     assert((await viewer.look()).difference(map) > 0.001, 'the band looks like the whole');
     await viewer.change(() => page.selectOption('#target', 'composite'));
     assert((await viewer.look()).difference(composite) < 0.01, 'the picture did not come back');
+});
+
+await check('a traced picture shows how far it has converged, and that it has', async () => {
+    await viewer.slide('target-error', 0.83);    // 8 %
+    await page.selectOption('#map-size', '256');
+    await page.selectOption('#mode', 'traced');
+    await viewer.until(() => page.isVisible('#convergence'), 'a progress bar');
+    assert.match(await viewer.text('convergence-line'), /^Converging: .+ photons, error about .+ % of 8\.\d %\.$/);
+    const early = await page.$eval('#convergence', (bar) => bar.value);
+    await viewer.until(async () => /^Converged/.test(await viewer.text('convergence-line')), 'the picture to converge');
+    assert(early < 1);
+    assert(await page.isHidden('#convergence'), 'the bar stayed');
+    assert.equal(viewer.lastFlags, 5, 'the last frame is not a converged still');
+    const line = await viewer.text('convergence-line');
+    await page.selectOption('#map-size', '512');
+    await viewer.change(() => page.selectOption('#mode', 'refined'));
+    assert(await page.isHidden('#convergence-line'), 'what does not converge has nothing to say');
+    return line;
 });
 
 await check('a saved picture is a PNG of the size on the screen', async () => {

@@ -34,7 +34,8 @@ class Viewer {
             if (typeof payload === 'string') return;
             ++this.frames;
             this.lastFrameMs = Date.now();
-            this.lastIsStill = (payload.readUInt32LE(16) & 1) === 1;
+            this.lastFlags = payload.readUInt32LE(16);
+            this.lastIsStill = (this.lastFlags & 1) === 1;
             this.lastIsComposite = payload.readUInt8(12) === 1;
         }));
     }
