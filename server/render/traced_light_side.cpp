@@ -61,6 +61,7 @@ TracedLightSide::Fit TracedLightSide::fit(const Inputs& all) {
     Fit fit;
     const optics::WavelengthSet set = wavelengthsOf(in);
     std::vector<double> coarse{set.nm.front()};
+    if (set.nm.size() > 2) coarse.push_back(set.nm[set.nm.size() / 2]);   // through a slit the middle may go alone
     if (set.nm.size() > 1) coarse.push_back(set.nm.back());
     std::vector<Landing> landings;
     double met = 0.0, sent = 0.0;
