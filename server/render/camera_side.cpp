@@ -8,7 +8,7 @@ namespace {
 
 // What a frame affords: in motion, at rest (where frames add up), in a still.
 constexpr CameraPaths::Settings kMoving{.rays = 2, .bounces = 1, .branches = 1, .least = 1.0f / 32.0f, .caustics = false};
-constexpr CameraPaths::Settings kAtRest{.rays = 2, .branches = 1, .least = 1.0f / 64.0f}, kStill{.rays = 8};
+constexpr CameraPaths::Settings kAtRest{.rays = 2, .branches = 1, .least = 1.0f / 64.0f}, kStill{.rays = 8}, kStillOfMany{.rays = 3, .branches = 1, .sample = 1};
 constexpr int kSamplesOfOne = 32, kSamplesOfMany = 96;   // a pixel at rest: of one convex caster, of others
 
 // Casters that are drawn, from back to front: refracting ones, where wanted, and thin walls.
@@ -30,7 +30,7 @@ void CameraSide::run(const Inputs& in, gl::StageTimer& timer) {
     const Request& request = in.request;
     inARow_ = request.target == Target::Composite && (!request.still || in.plan.runs("picture_mean"));
     if (in.plan.runs("picture_mean")) return rest(in, timer);
-    CameraPaths::Settings settings = request.still ? kStill : kMoving;
+    CameraPaths::Settings settings = !request.still ? kMoving : in.surfaces && in.surfaces->lone() ? kStill : kStillOfMany;
     settings.bounces = request.still ? request.transport.bounces : std::min(settings.bounces, request.transport.bounces);
     draw(in, settings, timer);
     if (inARow_) progress_.move(pictureKey(request), color_);
