@@ -90,7 +90,12 @@ std::string planReport(const Config& config) {
     request.camera.eye += kMove * (request.camera.eye - request.camera.target);
     tell(text, "\nthe next, after the camera moved", pipeline.run(request));
     moveLights(request);
-    tell(text, "\nthe next, after the lights moved", pipeline.run(request));
+    const render::Frame moved = pipeline.run(request);
+    tell(text, "\nthe next, after the lights moved", moved);
+    if (moved.stats.convergence) {
+        request.converge = true;
+        tell(text, "\nthe next, at rest, of those that converge", pipeline.run(request));
+    }
     return text;
 }
 

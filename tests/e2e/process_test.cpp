@@ -72,8 +72,10 @@ TEST(Process, HelpTeaches) {
 TEST(Process, TellsAScenesPlan) {
     const Ended gem = runServer({"--plan", "gem"});
     EXPECT_EQ(gem.exitCode, 0) << gem.err;
-    EXPECT_THAT(gem.out, HasSubstr("run   photon_trace"));
-    EXPECT_THAT(gem.out, HasSubstr("skip  photon_trace"));   // after the camera moved
+    EXPECT_THAT(gem.out, HasSubstr("run   photon_paths"));
+    EXPECT_THAT(gem.out, HasSubstr("skip  photon_paths"));   // after the camera moved
+    EXPECT_THAT(gem.out, HasSubstr("skip  picture_mean"));
+    EXPECT_THAT(gem.out, HasSubstr("run   picture_mean"));   // at rest
     EXPECT_THAT(gem.out, HasSubstr("unchanged"));
     const Ended dark = runServer({"--plan", "sphere", "--set", "lights.key.direction=[0,1,0]", "--set", "stream.target=spectral"});
     EXPECT_THAT(dark.out, HasSubstr("the light reaches no caster"));
