@@ -57,7 +57,11 @@ std::vector<Case> mirrorCases() {
         Setup setup = with([](SyntheticScene& parts, int) { parts.addSphere(mirror(parts, glm::vec3(0.0f)), {0, 0.5f, 0}, 0.3f); });
         return setup;
     });
-    add("edge-on", [] { return with([](SyntheticScene& parts, int metal) { parts.addQuad(metal, {0, 0.2f, 0.3f}, {0, 0.6f, 0}, {0, 0, -0.6f}); }, spotAbove({0, 2.5f, 0}, {0, 0.5f, 0}, 14.0f)); });
+    add("edge-on", [] {
+        Setup setup = with([](SyntheticScene& parts, int metal) { parts.addQuad(metal, {0, 0.2f, 0.3f}, {0, 0.6f, 0}, {0, 0, -0.6f}); }, spotAbove({0, 2.5f, 0}, {0, 0.5f, 0}, 14.0f));
+        setup.jumps = "the mirror is edge-on to the light: a step lights all of it";
+        return setup;
+    });
     add("facing-each-other", [] {
         return with([](SyntheticScene& parts, int metal) {
             parts.addQuad(metal, {-0.2f, 0.2f, 1}, {0, 0, -2}, {0, 1, 0});

@@ -103,7 +103,7 @@ Setup rod(int bounces) {
 double gone(const EnergyLedger& l) { return l.deposited + l.leftMap + l.noReceiver; }
 
 std::string passesTheRod(const EnergyLedger& l) { return gone(l) > 0.8 * l.onCasters && l.cut < 0.08 * l.onCasters ? "" : "total reflection loses light"; }
-std::string staysInTheRod(const EnergyLedger& l) { return gone(l) < 1e-3 * l.onCasters ? "" : "light leaves the rod before its end"; }
+std::string staysInTheRod(const EnergyLedger& l) { return gone(l) <= 1e-3 * l.onCasters ? "" : "light leaves the rod before its end"; }
 std::string nothingLeaves(const EnergyLedger& l) { return gone(l) <= 1e-3 * l.onCasters ? "" : "light leaves what is closed and black"; }
 
 void addNested(std::vector<Case>& cases) {
