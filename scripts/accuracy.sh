@@ -13,7 +13,9 @@ scripts/accuracy.sh [--quick] [--fresh] [PART...]
     and the plots in docs/images/accuracy. About a quarter of an hour on two quiet cores; the references that it traces are
     kept for the next time. What was cut short goes on where it ended.
 
-    PART: error-vs-time, vs-thesis, estimate, stability, omissions; all of them unless some are named.
+    PART: error-vs-time, vs-thesis, estimate, converge, peers, stability, omissions; all of them unless some are named.
+    converge traces a reference of each built-in scene (half an hour at first); peers needs POV-Ray (apt-get install povray)
+    and is left out where it is missing, unless it is named.
     --quick  fewer configurations, photons and cases, to try; writes to build/accuracy only
     --fresh  measures again what build/accuracy holds already
 TEXT
@@ -30,7 +32,7 @@ while [[ $# -gt 0 ]]; do
             ;;
         --quick) quick=(--quick) ;;
         --fresh) fresh=(--fresh) ;;
-        error-vs-time | vs-thesis | estimate | stability | omissions) parts+=("$1") ;;
+        error-vs-time | vs-thesis | estimate | converge | peers | stability | omissions) parts+=("$1") ;;
         *)
             echo "accuracy: no such part or option: $1 (--help lists them)" >&2
             exit 1
@@ -38,7 +40,10 @@ while [[ $# -gt 0 ]]; do
     esac
     shift
 done
-[[ ${#parts[@]} -gt 0 ]] || parts=(error-vs-time vs-thesis estimate stability omissions)
+if [[ ${#parts[@]} -eq 0 ]]; then
+    parts=(error-vs-time vs-thesis estimate converge stability omissions)
+    command -v povray >/dev/null && parts+=(peers)
+fi
 [[ ${#quick[@]} -eq 0 ]] || out="build/accuracy-quick"
 
 scripts/setup.sh
@@ -66,6 +71,11 @@ for part in "${parts[@]}"; do
         error-vs-time) "$bench" error-vs-time --out "$out" "${quick[@]}" "${fresh[@]}" ;;
         vs-thesis) "$bench" error-vs-time --vs-thesis --out "$out/vs-thesis" "${quick[@]}" "${fresh[@]}" && cp "$out/vs-thesis/vs-thesis.md" "$out" ;;
         estimate) { echo '```text'; "$bench" estimate | tee /dev/stderr; echo '```'; } >"$out/estimate.md" ;;
+        converge) "$bench" converge --all --references --markdown "$out/converge.md" "${quick[@]}" ;;
+        peers)
+            "$bench" peers --markdown "$out/peers-one.md" && "$bench" peers --all-wavelengths --counts 400000 1600000 --markdown "$out/peers-all.md" &&
+                { cat "$out/peers-one.md" && echo && cat "$out/peers-all.md"; } >"$out/peers.md"
+            ;;
         *) "$bench" "$part" --markdown "$out/$part.md" ;;
     esac
     [[ ${#quick[@]} -eq 0 ]] || continue

@@ -23,8 +23,8 @@ const std::vector<Mode> kModes = {{.name = "refined"},
                                   {.name = "traced-continuous", .transport = render::Mode::Traced, .wavelengths = render::kContinuous},
                                   {.name = "thesis", .transport = render::Mode::Thesis, .mustPass = false}};
 
-constexpr int kMostConverging = 12;        // frames at rest; slow ones end there
-constexpr double kConvergedError = 0.05;
+constexpr int kMostConverging = 6;         // frames at rest; slow ones end there
+constexpr double kConvergedError = 0.1;
 constexpr int kLargestBandedMap = 512;   // bands are summed on the CPU: larger ones take seconds and show nothing new
 
 std::string number(double value) {
