@@ -25,7 +25,8 @@ using peers::PovrayPhotons;
 struct PeersOptions {
     std::string scene = "gem", gpu = "software", markdown;
     std::vector<std::int64_t> counts = {100'000, 400'000, 1'600'000, 6'400'000};
-    int wavelength = 580, map = 1024, grid = 0, frames = 64, threads = 2;
+    std::vector<int> grids = {128, 256, 512, 1024, 2048};
+    int wavelength = 580, map = 1024, threads = 2;
     bool allWavelengths = false;
 };
 
@@ -75,40 +76,34 @@ std::vector<Point> povrayPoints(const PeersOptions& options, const reference::Re
     return points;
 }
 
-// Frames at rest of a light pose never seen before; the clock runs for whole frames, read-back of the map included. Maps in
-// bands do not converge, so here, too, each wavelength is a run of its own.
+// A frame with so many photons, of a light pose never seen before: light views, trace, map and its read-back. Each wavelength
+// is a run of its own, as it is there.
 std::vector<Point> tracedPoints(const PeersOptions& options, const Subject& subject, const reference::Reference& reference, const std::vector<std::size_t>& bands) {
     Renderer renderer(options.gpu);
-    Configuration configuration;
-    configuration.transport.mode = render::Mode::Traced;
-    configuration.transport.mapSize = options.map;
-    configuration.transport.photonGrid = options.grid;
-    configuration.transport.bounces = 15;    // what the reference follows
-    configuration.transport.targetError = 1e-3;
-    render::Pipeline& pipeline = renderer.pipeline(configuration, subject.fingerprint);
     const auto cells = subject.plane->weights().size();
-
     std::vector<Point> points;
-    for (const std::size_t band : bands) {
-        configuration.transport.wavelengthsNm = {reference.nm[band]};
-        render::Request request = mapRequest(subject.scene, configuration);
-        request.scene = std::make_shared<const scene::Scene>(withMovedLight(subject.scene, 1 + static_cast<int>(band)));
-        pipeline.run(request);                // makes the images
-        request.scene = std::make_shared<const scene::Scene>(subject.scene);
-        Spent spent;
-        std::size_t at = 0;
-        for (int frame = 1; frame <= options.frames; ++frame) {
-            request.converge = frame > 1;
+    for (const int grid : options.grids) {
+        Point point{.what = format("grid %d", grid), .spent = {}};
+        Configuration configuration;
+        configuration.transport.mode = render::Mode::Traced;
+        configuration.transport.mapSize = options.map;
+        configuration.transport.photonGrid = grid;
+        configuration.transport.bounces = 15;    // what the reference follows
+        render::Pipeline& pipeline = renderer.pipeline(configuration, subject.fingerprint);
+        for (const std::size_t band : bands) {
+            configuration.transport.wavelengthsNm = {reference.nm[band]};
+            render::Request request = mapRequest(subject.scene, configuration);
+            request.scene = std::make_shared<const scene::Scene>(withMovedLight(subject.scene, 1));
+            if (band == bands.front()) pipeline.run(request);   // makes the images
+            request.scene = std::make_shared<const scene::Scene>(subject.scene);
             const Clock clock;
             const render::Frame map = pipeline.run(request);
-            spent += clock.spent();
-            if (frame != 1 << at) continue;
-            if (at == points.size()) points.push_back({.what = format("%d frame%s", frame, frame > 1 ? "s" : ""), .spent = {}});
-            Point& point = points[at++];
-            point.photons += map.stats.convergence ? map.stats.convergence->photons : map.stats.photons;
-            point.spent += spent;
+            point.spent += clock.spent();
+            point.photons += map.stats.photons;
             addError(point, &resample(map, *subject.plane, 8)[cells], reference, band, bands.size());   // of three alike channels, green
         }
+        points.push_back(point);
+        std::fprintf(stderr, "traced, %s: %.2f CPU s, %.4f\n", point.what.c_str(), point.spent.cpuSeconds, point.error);
     }
     return points;
 }
@@ -174,8 +169,7 @@ void addPeers(CLI::App& app) {
     command->add_option("--nm", options->wavelength, "380, 430 ... 680")->capture_default_str();
     command->add_flag("--all-wavelengths", options->allWavelengths, "all seven: POV-Ray needs a run for each");
     command->add_option("--map", options->map, "texels a side")->check(CLI::Range(64, 2048))->capture_default_str();
-    command->add_option("--grid", options->grid, "photons a side and frame; 0: chosen")->check(CLI::Range(0, 4096))->capture_default_str();
-    command->add_option("--frames", options->frames, "most")->check(CLI::Range(1, 100000))->capture_default_str();
+    command->add_option("--grids", options->grids, "photons a side, of traced transport")->check(CLI::Range(16, 4096))->capture_default_str();
     command->add_option("--threads", options->threads, "of POV-Ray")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_option("--markdown", options->markdown, "a file for the table");
     command->footer("CPU seconds are user and system time of all threads: of POV-Ray the whole process, of this program the frames, each with the\n"
