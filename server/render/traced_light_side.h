@@ -84,7 +84,9 @@ class TracedLightSide {
     std::uint64_t tracedNow_ = 0;          // photons of this frame
     double ledgerPerFlux_ = 1.0, ledgerPerFixed_ = 1.0;
     std::uint64_t startedNs_ = 0;          // when this frame's photons were sent
-    double msPerPhoton_ = 0.0;             // of the newest frame that traced
+    std::uint64_t sentNs_ = 0;             // when the call that traces them returned
+    double msPerPhoton_ = 0.0;             // of the newest frame that traced, all that its map took
+    double tracingMsPerPhoton_ = 0.0;      // of its photons alone
 };
 
 }  // namespace caustream::render

@@ -178,7 +178,7 @@ void follow(vec3 origin, vec3 direction, Surface surface, int entry) {
         if (!first) surface = nearestSurface(now.origin, now.direction, now.piece, now.inside.casters);
         int medium = mediumOf(now.inside);
         bool ended = false;
-        if (--steps < 0) {
+        if (--steps < 0 || surface.caster == kLost) {
             g_tally.cut += now.flux;
             ended = true;
         } else if (medium == kOutside && !first) {
