@@ -1,5 +1,6 @@
 #include "render/view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -48,6 +49,12 @@ glm::mat4 lookAlong(const glm::vec3& position, const glm::vec3& forward, const g
     }
     view[3] = glm::vec4(-glm::dot(x, position), -glm::dot(y, position), glm::dot(forward, position), 1.0f);
     return view;
+}
+
+int viewsFlag(std::initializer_list<const View*> views) {
+    const auto perspective = [](const View* view) { return view->perspective; };
+    if (std::all_of(views.begin(), views.end(), perspective)) return 1;
+    return std::none_of(views.begin(), views.end(), perspective) ? 2 : 0;
 }
 
 void setView(const gl::Uniforms& uniforms, const char* name, const View& view) {

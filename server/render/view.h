@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <initializer_list>
 
 #include "gl/uniforms.h"
 
@@ -31,6 +32,9 @@ struct View {
 
 // Rigid world -> view for an eye at `position` looking along unit `forward`, `up` a hint that may be parallel to it.
 glm::mat4 lookAlong(const glm::vec3& position, const glm::vec3& forward, const glm::vec3& up);
+
+// kViews of common/view.glsl: 1 when all are perspective, 2 when all are parallel, 0 when each has to say so itself.
+int viewsFlag(std::initializer_list<const View*> views);
 
 // Sets the members of a GLSL `uniform View <name>`.
 void setView(const gl::Uniforms& uniforms, const char* name, const View& view);

@@ -8,7 +8,7 @@ vec3 concentration(sampler2D inner, sampler2D outer, View view, vec2 outerScale,
     vec2 offset = viewToUv(view, pos) - 0.5, outerOffset = offset * outerScale;
     vec4 fine = texture(inner, 0.5 + offset), coarse = texture(outer, 0.5 + outerOffset);
     bool inInner = all(lessThan(abs(offset), vec2(0.5)));
-    bool inOuter = all(lessThan(abs(outerOffset), vec2(0.5))) && (!view.perspective || pos.z < 0.0);
+    bool inOuter = all(lessThan(abs(outerOffset), vec2(0.5))) && (!isPerspective(view) || pos.z < 0.0);
     vec3 sum = max(coarse.rgb + (inInner ? fine.rgb : vec3(0.0)), vec3(0.0));
     float layer = inInner ? fine.a : coarse.a;
     float hidden = layer < 1.0 ? behindLayer(view, pos, layer) : 0.0;
@@ -19,7 +19,7 @@ vec3 concentration(sampler2D inner, sampler2D outer, View view, vec2 outerScale,
 vec3 concentration(sampler2D inner, View view, vec3 pos) {
     vec2 offset = viewToUv(view, pos) - 0.5;
     vec4 fine = texture(inner, 0.5 + offset);
-    bool inInner = all(lessThan(abs(offset), vec2(0.5))) && (!view.perspective || pos.z < 0.0);
+    bool inInner = all(lessThan(abs(offset), vec2(0.5))) && (!isPerspective(view) || pos.z < 0.0);
     float hidden = fine.a < 1.0 ? behindLayer(view, pos, fine.a) : 0.0;
     return inInner ? max(fine.rgb, vec3(0.0)) * clamp(3.0 - 100.0 * hidden, 0.0, 1.0) : vec3(0.0);
 }

@@ -13,7 +13,7 @@ vec3 surroundings(vec3 dir) { return textureLod(u_surroundings, 0.5 + 0.5 * dir.
 
 // uv and layer value: linear along a ray in the image, 0 at infinity.
 vec3 toImage(vec3 pos) {
-    float layer = u_view.perspective ? u_view.near / max(-pos.z, 1e-20)
+    float layer = isPerspective(u_view) ? u_view.near / max(-pos.z, 1e-20)
                                      : 1.0 - (-pos.z - u_view.near) / (u_view.far - u_view.near);
     return vec3(viewToUv(u_view, pos), layer);
 }
@@ -23,14 +23,14 @@ float behind(vec3 at) { return textureLod(u_receiversDepth, at.xy, 0.0).r - at.z
 
 // Where the ray leaves the picture's frustum; `endless` when it never does.
 vec3 frustumEnd(vec3 pos, vec3 dir, out bool endless) {
-    float z = u_view.perspective ? -pos.z : 1.0, dz = u_view.perspective ? -dir.z : 0.0;
+    float z = isPerspective(u_view) ? -pos.z : 1.0, dz = isPerspective(u_view) ? -dir.z : 0.0;
     vec4 room = vec4(u_view.halfExtent * z - pos.xy, u_view.halfExtent * z + pos.xy);
     vec4 change = vec4(u_view.halfExtent * dz - dir.xy, u_view.halfExtent * dz + dir.xy);
     float length_ = 1e30;
     for (int i = 0; i < 4; ++i) length_ = change[i] < 0.0 ? min(length_, max(room[i], 0.0) / -change[i]) : length_;
     float toNear = -pos.z - u_view.near, toFar = u_view.far + pos.z;
     if (dir.z > 0.0) length_ = min(length_, max(toNear, 0.0) / dir.z);
-    if (!u_view.perspective && dir.z < 0.0) length_ = min(length_, max(toFar, 0.0) / -dir.z);
+    if (!isPerspective(u_view) && dir.z < 0.0) length_ = min(length_, max(toFar, 0.0) / -dir.z);
     endless = length_ > 1e29;
     return endless ? vec3(viewToUv(u_view, dir), 0.0) : toImage(pos + length_ * dir);
 }

@@ -57,7 +57,7 @@ int findReceiver(View view, sampler2D layer, vec3 origin, vec3 direction, float 
     float from = 0.0;
     float to = reach;
     vec2 h = view.halfExtent;
-    if (view.perspective) {
+    if (isPerspective(view)) {
         clipHalfSpace(origin.x + h.x * origin.z, direction.x + h.x * direction.z, from, to);
         clipHalfSpace(-origin.x + h.x * origin.z, -direction.x + h.x * direction.z, from, to);
         clipHalfSpace(origin.y + h.y * origin.z, direction.y + h.y * direction.z, from, to);

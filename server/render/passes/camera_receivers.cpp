@@ -15,8 +15,8 @@ enum Maps : int { kNoMap, kInnerMap, kBothMaps };
 
 enum Unit : int { kBaseColor, kShading };
 
-std::vector<gl::Flag> flags(bool shadow, int map, bool texture, bool full) {
-    return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}, {"RAYS", 0}};
+std::vector<gl::Flag> flags(bool shadow, int map, bool texture, bool full, int views = 1) {
+    return {{"SHADOW", shadow}, {"MAP", map}, {"TEXTURE", texture}, {"FULL", full}, {"RAYS", 0}, {"kViews", views}};
 }
 
 }  // namespace
@@ -70,6 +70,9 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
     const bool map = lighting.hasMap;
     glBindSampler(kBaseColor, trilinear_.get());
 
+    const View& first = lighting.hasShadow ? lighting.shadowView : lighting.mapView;   // of any, where there is none
+    const int views = hasCookie(lighting) ? 0 : viewsFlag({&first, map ? &lighting.mapView : &first, map ? &lighting.outerView : &first});
+
     // One draw per receiver; a variant's frame uniforms are set when it is first used.
     in.scene.bind();
     std::vector<GLuint> ready;
@@ -82,7 +85,7 @@ void CameraReceivers::run(const Inputs& in, const Outputs& out) {
         const bool full = hasCookie(lighting) || lighting.lights.size() > 1 || glossy(material) || in.forced.has(Omission::Gloss);
         const bool texture = material.baseColorTexture >= 0 || in.forced.has(Omission::Textures);
         const GLuint program = shaders_.program(in.asPublished ? "thesis_receivers" : "camera_receivers",
-                                               flags(shadow, !lit ? kNoMap : outer ? kBothMaps : kInnerMap, texture, full));
+                                               flags(shadow, !lit ? kNoMap : outer ? kBothMaps : kInnerMap, texture, full, views));
         if (std::find(ready.begin(), ready.end(), program) == ready.end()) {
             setFrame(in, program);
             ready.push_back(program);

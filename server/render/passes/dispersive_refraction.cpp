@@ -16,8 +16,8 @@ constexpr std::size_t kNodes = 2, kSplitNodes = 8;  // traced exactly; the shade
 constexpr int kSurroundings = 8;  // texels a side, as the shader says
 enum Unit : int { kFront, kBack, kReceiversDepth, kBackground, kSurroundingsUnit };
 
-std::vector<gl::Flag> flags(bool thin, bool split, bool single, bool absorption) {
-    return {{"THIN", thin}, {"SPLIT", split}, {"SINGLE", single}, {"ABSORPTION", absorption}};
+std::vector<gl::Flag> flags(bool thin, bool split, bool single, bool absorption, int views = 1) {
+    return {{"THIN", thin}, {"SPLIT", split}, {"SINGLE", single}, {"ABSORPTION", absorption}, {"kViews", views}};
 }
 
 // Nodes are `most` of the wavelengths, spread evenly from the first to the last. A wavelength belongs to the node at or
@@ -101,7 +101,7 @@ void DispersiveRefraction::run(const Inputs& in, const Settings& settings, gl::T
     const bool single = !in.glass.thinWalled && wavelengths.size() == 1 && !settings.forced.has(Omission::OneWavelength);
     const bool absorbs = !in.glass.thinWalled && (settings.forced.has(Omission::Absorption) ||
         std::any_of(wavelengths.begin(), wavelengths.end(), [](const Wavelength& w) { return w.absorptionPerM > 0.0f; }));
-    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled, split, single, absorbs));
+    const GLuint program = shaders_.program("dispersive_refraction", flags(in.glass.thinWalled, split, single, absorbs, viewsFlag({&in.view})));
     glUseProgram(program);
     const gl::Uniforms uniforms(program);
     setView(uniforms, "u_view", in.view);

@@ -3,8 +3,8 @@
 namespace caustream::render {
 
 namespace {
-std::vector<gl::Flag> flags(bool adapted, bool finest, bool judged, bool above) {
-    return {{"ABOVE", above}, {"ADAPTED", adapted}, {"FINEST", finest}, {"JUDGED", judged}};
+std::vector<gl::Flag> flags(bool adapted, bool finest, bool judged, bool above, int views = 1) {
+    return {{"ABOVE", above}, {"ADAPTED", adapted}, {"FINEST", finest}, {"JUDGED", judged}, {"kViews", views}};
 }
 }  // namespace
 
@@ -20,7 +20,7 @@ void MapResolve::run(const Inputs& in, gl::Texture& concentration, const gl::Buf
         out.ensure(size, size, GL_RGBA32F, "spectral map");
 
         const bool above = level + 1 < in.levels;
-        const GLuint program = shaders_.program("map_resolve", flags(in.kept != nullptr, level == 0, in.judged, above));
+        const GLuint program = shaders_.program("map_resolve", flags(in.kept != nullptr, level == 0, in.judged, above, viewsFlag({&in.view})));
         glUseProgram(program);
         const gl::Uniforms uniforms(program);
         setView(uniforms, "u_view", in.view);
