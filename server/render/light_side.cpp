@@ -143,7 +143,8 @@ void LightSide::traceCaster(const Inputs& in, const LitCaster& emitter, std::siz
                           .backSteps = in.transport.backSteps, .receiverSteps = in.transport.receiverSteps,
                           .exitToleranceM = 0.1f * radius,
                           .reachM = 8.0f * std::max(in.scene.geometry->bounds.radius(), radius),
-                          .residuals = in.countResiduals ? &residuals_ : nullptr},
+                          .residuals = in.countResiduals ? &residuals_ : nullptr,
+                          .absorption = in.forced.has(Omission::Absorption)},
                          {map_, ledger_});
     });
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);   // map -> resolve, read-back

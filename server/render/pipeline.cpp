@@ -33,6 +33,7 @@ namespace caustream::render {
 namespace {
 
 constexpr std::size_t kMostLightMaps = 4;    // poses kept, about 10 MB each at 512^2
+constexpr int kSoftwareNodes = 4;            // of a continuous spectrum on software GL
 constexpr std::size_t kMostChoices = 16;     // of budgets and targets, remembered so that they do not flicker
 constexpr float kAutoKey = 0.8f;             // picture value of a white receiver that faces the light at the caustic
 
@@ -339,16 +340,10 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     };
     // Those for a light with a cookie and those of the published algorithm are compiled when one comes: few do.
     impl_->shaders.program("photon_list", {{"COOKIE", 0}});
-    for (const int bands : {0, 1}) {
-        for (const int retry : {0, 1}) {
-            for (int continuous = 0; continuous <= (bands ? 0 : 1); ++continuous) {
-                impl_->shaders.program("photon_trace", {{"BANDS", bands}, {"CONTINUOUS", continuous}, {"COOKIE", 0}, {"RESIDUALS", 0}, {"RETRY", retry}});
-            }
-        }
-    }
+    PhotonTrace::warmUp(impl_->shaders, impl_->context.software() ? kSoftwareNodes : layout::kMostNodes);
     for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
     MapResolve::warmUp(impl_->shaders);
-    impl_->shaders.program("spectral_step");
+    SpectralStep::warmUp(impl_->shaders);
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
     report(1);
     impl_->cameraSide.warmUpReceivers();
@@ -391,7 +386,7 @@ Frame Pipeline::run(const Request& asked) {
     wanted.transport.mode = mode.mode;
     if (mode.mode != Mode::Traced && mode.traceAtRest) wanted.transport.targetError = 0.0;   // which is where it converges to
     PlanFacts facts = gatherFacts(wanted, scene.lights[static_cast<std::size_t>(key)], view, entry.enclosure);
-    facts.continuousNodes = impl.context.software() ? 4 : layout::kMostNodes;
+    facts.continuousNodes = impl.context.software() ? kSoftwareNodes : layout::kMostNodes;
     Frame frame;
     facts.modeReason = mode.why, facts.refinedCamera = resting && !asked.still;
     const Request request = impl.withChoice(wanted, facts, frame.stats.choice);

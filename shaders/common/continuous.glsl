@@ -2,15 +2,19 @@
 // them, each with the colour of its own part of the band, so that every part of it arrives once whatever the samples.
 // Interpolated only between nodes that land on one surface; what lies between others is traced (RETRY 1).
 uniform vec4 u_cumulative[kSpectrumSteps + 1];  // XYZ up to a place of the band, violet to red, uniform in 1/lambda^2; n outside / n inside there
+#if ABSORPTION
 uniform float u_absorption[kSpectrumSteps + 1]; // 1/m
+#endif
+#ifndef kNodes
+#define kNodes 4
+#endif
+const int kIntervals = kNodes - 1;
 const float kGreen = 0.7;                       // place of the band where most of its luminance lies
 const float kOneSurface = 2e-3;                 // of the depth: the middle of two nodes lies on their surface within this
 const int kMostSamples = 12;                    // of a photon's spectrum
-const int kSampleRoom = kMostSamples + 1 + kMostNodes;   // the first and the last are parts, and so where intervals are left out
+const int kSampleRoom = kMostSamples + 1 + kNodes;   // the first and the last are parts, and so where intervals are left out
 const float kSparse = 4.0;                      // texels of a sample beyond which it is spread over wider ones
 const int kTracedSamples = 3;                   // of an interval that cannot be interpolated
-
-int intervals() { return u_wavelengths - 1; }
 
 // Linear in the table at `place` of the band, 0 (violet) to 1.
 vec4 spectrumAt(float place) {
@@ -18,15 +22,19 @@ vec4 spectrumAt(float place) {
     int step = min(int(at), kSpectrumSteps - 1);
     return mix(u_cumulative[step], u_cumulative[step + 1], at - float(step));
 }
-// Where in a sample's width a photon's first one ends. Interleaved gradient noise (Jimenez 2014): neighbours differ evenly,
-// and no long period beats against the map's texels.
-float phaseOf(ivec2 texel) { return fract(52.9829189 * fract(dot(vec2(texel), vec2(0.06711056, 0.00583715)))); }
-
 float absorptionAt(float place) {
+#if ABSORPTION
     float at = place * float(kSpectrumSteps);
     int step = min(int(at), kSpectrumSteps - 1);
     return mix(u_absorption[step], u_absorption[step + 1], at - float(step));
+#else
+    return 0.0;
+#endif
 }
+
+// Where in a sample's width a photon's first one ends. Interleaved gradient noise (Jimenez 2014): neighbours differ evenly,
+// and no long period beats against the map's texels.
+float phaseOf(ivec2 texel) { return fract(52.9829189 * fract(dot(vec2(texel), vec2(0.06711056, 0.00583715)))); }
 
 #if RETRY
 // The last sample traced, held back until the next one tells how far apart they land.
@@ -47,8 +55,8 @@ void depositHeld(Held held, float apart, float ownLevel, ivec2 innerSize) {
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
-    if (item >= retryCount) return;
-    uvec4 retry = retries[item];
+    if (item >= retriesListed()) return;
+    uvec4 retry = retryAt(item);
     roundBy(retry.x);
     ivec2 size = textureSize(u_front, 0);
     ivec2 texel = ivec2(retry.x % uint(size.x), retry.x / uint(size.x));
@@ -67,7 +75,7 @@ void main() {
         bool dark = (retry.w & (1u << interval)) != 0u;
         remaining &= remaining - 1u;
         Held held = Held(false, vec2(0.0), 0.0, vec3(0.0));
-        float first = float(interval) / float(intervals()), last = float(interval + 1) / float(intervals()), from = first;
+        float first = float(interval) / float(kIntervals), last = float(interval + 1) / float(kIntervals), from = first;
         vec3 before = spectrumAt(first).xyz;
         // Where neither end lands, one sample of the whole interval (j = 0) is enough unless that lands.
         for (int j = dark ? 0 : 1; j <= kTracedSamples + 1; ++j) {
@@ -142,8 +150,13 @@ void depositSamples(vec2 landed[kSampleRoom], vec3 amount[kSampleRoom], int samp
 
 struct Node {
     vec2 at;           // uv of the inner map
-    float way, layer;  // inside the caster, m; the receiver's layer value
+    float layer;       // the receiver's layer value
+#if ABSORPTION
+    float way;         // inside the caster, m
     vec2 reflectance;
+#else
+    float through;     // of the light, what both interfaces let through
+#endif
 };
 
 void main() {
@@ -162,7 +175,7 @@ void main() {
     vec3 exitNormal, origin, ray;
     vec2 at, reflectance;
     Meeting meeting = Meeting(0.0, 0.0);
-    int passed = passThrough(entry, u_glass[intervals()].x, u_backSteps, way, exitNormal, origin, ray, reflectance);
+    int passed = passThrough(entry, u_glass[kIntervals].x, u_backSteps, way, exitNormal, origin, ray, reflectance);
     bool allReflected = passed == kTotal, met = false;
     if (passed == kLeaves) {
         met = findReceiver(u_mapView, u_receivers, origin, ray, u_reach, u_receiverSteps, at, meeting) == kHit;
@@ -170,18 +183,32 @@ void main() {
         if (u_levels > 1 && met) level = levelAt(texel, entry.layer, way, exitNormal, meeting, at);
     }
 
-    // All nodes from there, and which of the intervals between them lie on one surface
-    Node nodes[kMostNodes];
+    // All nodes from there, and which of the intervals between them lie on one surface. Their number is fixed, so that
+    // loops over them unroll and nodes live in registers.
+    Node nodes[kNodes];
     Tally tally = Tally(0.0, 0.0, 0.0);
     float lastWay = way, spread = 0.0;
     uint bridged = 0u, broken = 0u, dark = 0u;
     bool lastMet = false, lastTotal = false;
-    int k = intervals();
-    while (true) {
-        vec3 landing = origin + meeting.t * ray;
-        nodes[k] = Node(at, way, layerOf(u_mapView, landing), reflectance);
+    for (int k = kIntervals; k >= 0; --k) {
+        // Glass that does not differ has no other way: white stays white at the rim too, where steps hardly settle.
+        if (k < kIntervals && u_glass[k].x != u_glass[k + 1].x) {
+            float ahead = way + (way - lastWay);
+            lastWay = way;
+            way = ahead;
+            passed = passThrough(entry, u_glass[k].x, kFollowSteps, way, exitNormal, origin, ray, reflectance);
+            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, true, meeting, at);
+        }
+        nodes[k].at = at;
+        nodes[k].layer = layerOf(u_mapView, origin + meeting.t * ray);
+#if ABSORPTION
+        nodes[k].way = way;
+        nodes[k].reflectance = reflectance;
+#else
+        nodes[k].through = (1.0 - reflectance.x) * (1.0 - reflectance.y);
+#endif
         bool total = passed == kTotal && allReflected;
-        if (k < intervals()) {
+        if (k < kIntervals) {
             vec2 middle = 0.5 * (at + nodes[k + 1].at);
             float straight = 0.5 * (nodes[k].layer + nodes[k + 1].layer);
             bool oneSurface = abs(textureLod(u_receivers, middle, 0.0).x - straight) <= kOneSurface * straight;
@@ -197,23 +224,14 @@ void main() {
         }
         lastMet = met;
         lastTotal = total;
-        if (--k < 0) break;
-        // Glass that does not differ has no other way: white stays white at the rim too, where steps hardly settle.
-        if (u_glass[k].x != u_glass[k + 1].x) {
-            float ahead = way + (way - lastWay);
-            lastWay = way;
-            way = ahead;
-            passed = passThrough(entry, u_glass[k].x, kFollowSteps, way, exitNormal, origin, ray, reflectance);
-            met = passed == kLeaves && followReceiver(u_mapView, u_receivers, origin, ray, true, meeting, at);
-        }
     }
 
     // Where the way from node to node bends: half the mean second difference of an interval's ends (Bessel's interpolation),
     // from neighbouring intervals of the same surface.
-    vec2 bend[kMostNodes - 1];
-    for (int i = 0; i < intervals(); ++i) {
-        int before = max(i - 1, 0), after = min(i + 1, intervals() - 1);
-        bool hasBefore = i > 0 && (bridged & (1u << before)) != 0u, hasAfter = i < intervals() - 1 && (bridged & (1u << after)) != 0u;
+    vec2 bend[kIntervals];
+    for (int i = 0; i < kIntervals; ++i) {
+        int before = max(i - 1, 0), after = min(i + 1, kIntervals - 1);
+        bool hasBefore = i > 0 && (bridged & (1u << before)) != 0u, hasAfter = i < kIntervals - 1 && (bridged & (1u << after)) != 0u;
         vec2 step = nodes[i + 1].at - nodes[i].at;
         vec2 atFirst = hasBefore ? step - (nodes[i].at - nodes[before].at) : vec2(0.0);
         vec2 atLast = hasAfter ? nodes[after + 1].at - nodes[i + 1].at - step : vec2(0.0);
@@ -223,13 +241,12 @@ void main() {
 
     // Twice as many samples as texels lie under the spectrum, or fewer: then those of neighbouring photons lie between them,
     // as each begins at another place of the band. Bins end at the nodes where an interval is left out.
-    float most = float(kMostSamples), parts = float(intervals());
+    float most = float(kMostSamples);
     level = clamp(max(level, log2(max(spread / (kSparse * most), 1e-3))), 0.0, float(u_levels - 1));
     float wanted = clamp(ceil(2.0 * spread * exp2(-level)), 1.0, most);
-    float phase = wanted < 3.0 ? 0.0 : phaseOf(texel);
+    float phase = wanted < 3.0 ? 0.0 : phaseOf(texel), parts = float(kIntervals), from = 0.0;
     Level pyramid = levelOf(level, innerSize);
     photonWidth = clamp(max(photonWidth, kOverlap * spread * exp2(-level) / wanted), kNarrowest, 1.0);
-    float from = 0.0;
     vec3 before = vec3(0.0);
     vec2 landed[kSampleRoom];
     vec3 amount[kSampleRoom];
@@ -238,26 +255,33 @@ void main() {
         float next = (float(edge) - phase) / wanted;
         float to = min(next, broken != 0u ? (floor(from * parts + 1e-3) + 1.0) / parts : 1.0);
         edge += next <= to ? 1 : 0;
-        float place = wanted == 1.0 && broken == 0u ? kGreen : 0.5 * (from + to), node = place * parts;
+        float place = wanted == 1.0 && broken == 0u ? kGreen : 0.5 * (from + to);
         vec3 upTo = spectrumAt(to).xyz, colour = max(upTo - before, vec3(0.0));
         before = upTo;
         from = to;
-        int i = min(int(node), intervals() - 1);
-        float f = clamp(node - float(i), 0.0, 1.0);
-        Node a = nodes[i], b = nodes[i + 1];
+        int i = min(int(place * parts), kIntervals - 1);
+        float f = clamp(place * parts - float(i), 0.0, 1.0);
+        Node a = nodes[0], b = nodes[1];
+        vec2 turn = bend[0];
+        for (int n = 1; n < kIntervals; ++n) {   // by hand: an index that differs between photons is looked up in memory
+            if (i == n) a = nodes[n], b = nodes[n + 1], turn = bend[n];
+        }
         float flux = (bridged & (1u << i)) != 0u ? entry.flux : 0.0;
-        flux = share(flux, colour.y, kLeaves, mix(a.reflectance, b.reflectance, f), absorptionAt(place), mix(a.way, b.way, f), tally);
-        landed[samples] = mix(a.at, b.at, f) - f * (1.0 - f) * bend[i];
+#if ABSORPTION
+        flux = share(flux, colour.y, kLeaves, mix(a.reflectance, b.reflectance, f), absorptionAt(place),
+                     mix(a.way, b.way, f), tally);
+#else
+        float through = mix(a.through, b.through, f);
+        tally.reflected += colour.y * flux * (1.0 - through);
+        flux *= through;
+#endif
+        landed[samples] = mix(a.at, b.at, f) - f * (1.0 - f) * turn;
         amount[samples] = colour * (flux * u_fixedPerFlux);
         ++samples;
     }
     depositSamples(landed, amount, samples, pyramid.fineSize, pyramid.fineFirst, 1.0 - pyramid.coarseShare);
     depositSamples(landed, amount, samples, pyramid.coarseSize, pyramid.coarseFirst, pyramid.coarseShare);
-    if (broken != 0u) {
-        uint place = atomicAdd(retryCount, 1u);
-        atomicMax(retryGroups[0], place / uint(kGroupSize) + 1u);
-        retries[place] = uvec4(index, floatBitsToUint(level), broken, dark);
-    }
+    if (broken != 0u) traceAgain(uvec4(index, floatBitsToUint(level), broken, dark), bitCount(broken) == kIntervals);
     book(kLedgerOnCasters, entry.flux);
     book(tally);
 }

@@ -52,8 +52,11 @@ struct Tally {
 // What leaves of `flux` after `way` in a medium that absorbs; the rest is added to the tally, times `weight`.
 float share(float flux, float weight, int passed, vec2 reflectance, float absorption, float way, inout Tally tally) {
     float inside = flux * (1.0 - reflectance.x);
-    float through = passed == kUnsettled ? inside : inside * exp(-absorption * way);
+    float through = inside;
+#if ABSORPTION
+    through *= passed == kUnsettled ? 1.0 : exp(-absorption * way);
     tally.absorbed += weight * (inside - through);
+#endif
     tally.reflected += weight * (flux * (reflectance.x < 1.0 ? reflectance.x : 0.0) + through * (reflectance.y < 1.0 ? reflectance.y : 0.0));
     tally.total += weight * (flux * (reflectance.x < 1.0 ? 0.0 : 1.0) + through * (reflectance.y < 1.0 ? 0.0 : 1.0));
     return through * (1.0 - reflectance.y);
@@ -70,7 +73,9 @@ void book(int row, float flux) {
 }
 
 void book(Tally tally) {
+#if ABSORPTION
     book(kLedgerAbsorbed, tally.absorbed);
+#endif
     book(kLedgerReflected, tally.reflected);
     book(kLedgerTotalReflection, tally.total);
 }

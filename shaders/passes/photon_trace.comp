@@ -1,7 +1,7 @@
 // Traces each listed photon at its wavelengths through two interfaces to the receivers and deposits its flux in the
 // spectral map. The longest wavelength, which is bent least, searches its way from nothing; the others start where it
 // ended. Those that do not
-// settle there go to a second dispatch (RETRY 1) that searches each from nothing, as a branch costs every photon the
+// settle there go to further dispatches (RETRY 1) that search each from nothing, as a branch costs every photon the
 // time of those that take it.
 #include "shared/layout.h"
 #include "common/view.glsl"
@@ -21,8 +21,7 @@ layout(std430, binding = kBindList) readonly buffer List {
 layout(std430, binding = kBindMap) buffer Map { uint map[]; };          // texel-major; inner map's levels, then the outer
 layout(std430, binding = kBindLedger) buffer Ledger { uint ledger[]; };
 layout(std430, binding = kBindRetry) buffer Retry {
-    uint retryGroups[3];
-    uint retryCount;
+    uint retryHeads[2 * kListHeader];   // of two lists: the dispatch size (3), how many
     uvec4 retries[];             // texel, level of the pyramid (float bits), wavelengths still to trace (64 bits)
 };
 
@@ -47,13 +46,29 @@ uniform float u_reach;                         // m: farther than any receiver
 
 #include "common/photon.glsl"
 
+#if RETRY
+uniform int u_retryList;
+
+uint retriesListed() { return retryHeads[u_retryList * kListHeader + 3]; }
+uvec4 retryAt(uint item) { return retries[u_retryList == 0 ? item : uint(retries.length()) - 1u - item]; }
+#else
+// Photons with little left to trace are listed from the front, those with all of it from the end: a processor takes eight
+// at a time and is done when the longest of them is.
+void traceAgain(uvec4 item, bool all) {
+    uint head = all ? uint(kListHeader) : 0u;
+    uint place = atomicAdd(retryHeads[head + 3u], 1u);
+    atomicMax(retryHeads[head], place / uint(kGroupSize) + 1u);
+    retries[all ? uint(retries.length()) - 1u - place : place] = item;
+}
+#endif
+
 #if CONTINUOUS && !BANDS    // bands are exact wavelengths
 #include "common/continuous.glsl"
 #elif RETRY
 void main() {
     uint item = gl_GlobalInvocationID.x;
-    if (item >= retryCount) return;
-    uvec4 retry = retries[item];
+    if (item >= retriesListed()) return;
+    uvec4 retry = retryAt(item);
     roundBy(retry.x);
     ivec2 size = textureSize(u_front, 0);
     ivec2 texel = ivec2(retry.x % uint(size.x), retry.x / uint(size.x));
@@ -161,9 +176,8 @@ void main() {
     depositAll(landed, pyramid.fineSize, pyramid.fineFirst, 1.0 - pyramid.coarseShare);
     depositAll(landed, pyramid.coarseSize, pyramid.coarseFirst, pyramid.coarseShare);
     if ((unsettled.x | unsettled.y) != 0u) {
-        uint place = atomicAdd(retryCount, 1u);
-        atomicMax(retryGroups[0], place / uint(kGroupSize) + 1u);
-        retries[place] = uvec4(index, floatBitsToUint(level), unsettled);
+        int left = bitCount(unsettled.x) + bitCount(unsettled.y);
+        traceAgain(uvec4(index, floatBitsToUint(level), unsettled), 2 * left > u_wavelengths);
     }
     book(kLedgerOnCasters, onCasters);
     book(tally);

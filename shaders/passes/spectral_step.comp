@@ -11,7 +11,9 @@ uniform vec2 u_step;                 // texels along x and y that a stretch span
 uniform float u_ledgerPerTexel;      // ledger units per texel of concentration 1
 
 const int kBlock = 4;
-const int kMostTaps = 16;
+#ifndef kTaps
+#define kTaps 2                        // of a line: fixed, as a loop of any length costs two and a half times as much
+#endif
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
 
 float luminanceAt(vec2 texel) {
@@ -20,10 +22,9 @@ float luminanceAt(vec2 texel) {
 
 // Mean over `span` texels of a line around the texel's middle.
 float meanAlong(vec2 middle, vec2 axis, float span) {
-    int taps = clamp(int(ceil(span)), 2, kMostTaps);
     float sum = 0.0;
-    for (int i = 0; i < taps; ++i) sum += luminanceAt(middle + axis * (span * ((float(i) + 0.5) / float(taps) - 0.5)));
-    return sum / float(taps);
+    for (int i = 0; i < kTaps; ++i) sum += luminanceAt(middle + axis * (span * ((float(i) + 0.5) / float(kTaps) - 0.5)));
+    return sum / float(kTaps);
 }
 
 void book(int row, float amount) {

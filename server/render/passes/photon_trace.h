@@ -44,6 +44,7 @@ class PhotonTrace {
         int backSteps = 4, receiverSteps = 6;
         float exitToleranceM = 1e-3f, reachM = 100.0f;
         const gl::Buffer* residuals = nullptr;               // kResidualHistograms x kResidualBins u32, to be counted up
+        bool absorption = false;                             // looked for even where no wavelength has any
     };
     struct Outputs {
         const gl::Buffer& map;        // u32, texel-major: levels of the inner map, then the outer's; kMapWords or `bands` each
@@ -52,12 +53,14 @@ class PhotonTrace {
 
     explicit PhotonTrace(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
     void run(const Inputs& in, const Outputs& out);
+    // `nodes`: of a continuous spectrum.
+    static void warmUp(gl::ShaderLibrary& shaders, int nodes);
 
    private:
-    void dispatch(const Inputs& in, int retry, const gl::Buffer& groups);
+    void dispatch(const Inputs& in, int retryList, const gl::Buffer& groups);   // retryList < 0: all photons
 
     gl::ShaderLibrary& shaders_;
-    gl::Buffer retry_;                // photons and wavelengths for the second dispatch
+    gl::Buffer retry_;                // photons and wavelengths for the other two dispatches
 };
 
 }  // namespace caustream::render

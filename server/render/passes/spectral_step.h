@@ -19,6 +19,7 @@ class SpectralStep {
         : shaders_(shaders), linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "spectral step")) {}
     // Books into `ledger`, rows kLedgerStep and kLedgerStepOf.
     void run(const Inputs& in, const gl::Buffer& ledger);
+    static void warmUp(gl::ShaderLibrary& shaders);
 
    private:
     gl::ShaderLibrary& shaders_;
