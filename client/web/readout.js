@@ -54,8 +54,8 @@ export function showConvergence(convergence) {
     bar.value = convergence?.progress ?? 0;
     line.hidden = !convergence;
     if (!convergence) return;
-    line.textContent = `${convergence.converged ? 'Converged' : 'Converging'}: ${count(convergence.photons)} photons, error about ` +
-        `${perCent(convergence.error)}${convergence.converged ? '' : ` of ${perCent(convergence.target)}`}.`;
+    const state = convergence.converged ? 'Converged' : `Converging to ${perCent(convergence.target)}`;
+    line.textContent = `${state}: ${count(convergence.photons)} photons, error about ${perCent(convergence.error)}.`;
 }
 
 export function showRates({ fps, roundTripMs, latencyMs }) {

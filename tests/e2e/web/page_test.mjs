@@ -112,7 +112,7 @@ await check('a traced picture shows how far it has converged, and that it has', 
     await page.selectOption('#map-size', '256');
     await page.selectOption('#mode', 'traced');
     await viewer.until(() => page.isVisible('#convergence'), 'a progress bar');
-    assert.match(await viewer.text('convergence-line'), /^Converging: .+ photons, error about .+ % of 8\.\d %\.$/);
+    assert.match(await viewer.text('convergence-line'), /^Converging to 8\.\d %: .+ photons, error about .+ %\.$/);
     const early = await page.$eval('#convergence', (bar) => bar.value);
     assert(early < 1, `it began at ${early}`);
     await viewer.until(() => viewer.lastFlags === 5, 'a still that has converged');
