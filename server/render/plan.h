@@ -30,6 +30,7 @@ struct PlanFacts {
     bool castersInCamera = false;
     int glass = 0, glassInCamera = 0;   // casters that are drawn: refracting or thin-walled
     double boxShare = 0.0;              // of the picture's pixels, in the boxes of the casters in view
+    int receiverTriangles = 0;
     int mirrors = 0;                    // casters of traced transport only
     std::string modeReason;             // why this transport, where that was left to us
     bool refinedCamera = false;         // Traced: the camera moves past meshes whose light rests
@@ -45,7 +46,8 @@ struct RenderPlan {
     int casters = 0;                    // that refract
     bool shadow = false;                // something throws one
     bool traced = false;                // exact transport: photon_paths, camera_paths
-    bool exactReceivers = false;        // met triangle by triangle: asked for, or one can stand before a caster
+    bool exactReceivers = false;        // met triangle by triangle: asked for, few, or one can stand before a caster
+    bool hidden = true;                 // a receiver may hide another from the light
 
     bool runs(const std::string& pass) const;
 };

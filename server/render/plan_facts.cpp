@@ -24,6 +24,7 @@ PlanFacts gatherFacts(const Request& request, const scene::Light& key, const Vie
         facts.mirrors += material.mirror;
         if (!material.caster) {
             ++facts.receivers;
+            facts.receiverTriangles += static_cast<int>(object.indexCount / 3);
             facts.walls += !enclosure.shades(object, key);
             facts.receiversTextured = facts.receiversTextured || material.baseColorTexture >= 0;
             facts.receiversGlossy = facts.receiversGlossy || glossy(material);

@@ -179,7 +179,7 @@ void TracedLightSide::trace(const Inputs& all, std::uint64_t photons, int firstE
                                   .spectra = bands ? entries : sums.spectra, .firstEntry = firstEntry, .entries = entries,
                                   .continuous = sums.entries.continuous,
                                   .bandShare = bands ? 1.0 / static_cast<double>(sums.entries.nm.size()) : 0.0,
-                                  .exactReceivers = in.transport.exactReceivers || in.plan.exactReceivers,
+                                  .exactReceivers = in.plan.exactReceivers, .hidden = in.plan.hidden,
                                   .bounces = in.transport.bounces, .receiverSteps = in.transport.receiverSteps,
                                   .fixedPerFlux = sums.fixedPerFlux, .ledgerPerFlux = ledgerPerFlux_,
                                   .reachM = 8.0f * in.scene.geometry->bounds.radius()},

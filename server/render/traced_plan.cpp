@@ -6,6 +6,8 @@ namespace caustream::render {
 
 namespace {
 
+constexpr int kFewTriangles = 64;   // are met sooner than the map's view is searched: 40% of photon_paths for the gem's floor
+
 std::string whyNoCaustic(const PlanFacts& facts) {
     if (facts.casters + facts.mirrors == 0) {
         return facts.idleCasters ? "every caster has the index of what is around it"
@@ -25,7 +27,8 @@ RenderPlan makeTracedPlan(const PlanFacts& facts, const Request& request) {
     const bool caustics = plan.casters > 0 && facts.castersLit > 0 && facts.lands;
     const std::string none = whyNoCaustic(facts);
     plan.shadow = caustics || facts.shadowCasters;
-    plan.exactReceivers = transport.exactReceivers || facts.shadowCasters;
+    plan.exactReceivers = transport.exactReceivers || facts.shadowCasters || facts.receiverTriangles <= kFewTriangles;
+    plan.hidden = facts.shadowCasters || request.forced.has(Omission::Walls);
 
     const auto light = [&](const char* pass, bool needed, bool again, const std::string& why, const std::string& whyNot, std::vector<std::string> without = {}) {
         const bool run = needed && (!facts.lightCached || again);
@@ -36,6 +39,7 @@ RenderPlan makeTracedPlan(const PlanFacts& facts, const Request& request) {
     std::vector<std::string> paths;
     if (!facts.cookie) paths.push_back("a cookie: the light has none");
     if (!plan.exactReceivers) paths.push_back("receivers triangle by triangle: none can stand before a caster, and the map's view has them");
+    else if (!plan.hidden) paths.push_back("whether the light sees where it lands: no receiver hides another");
     if (!request.wavelengthBands) paths.push_back("bands: colours are asked for");
     light("receiver_depth", caustics || plan.shadow, false, caustics ? "light lands behind a caster" : "a receiver throws a shadow", "nothing throws a shadow");
     light("photon_paths", caustics, facts.adding,

@@ -90,10 +90,16 @@ void deposit(vec2 uv, bool outer, float flux) {
 }
 
 #if EXACT_RECEIVERS
-// Light on a receiver that the light itself does not see belongs to no texel of its map.
+// Light on a receiver that the light itself does not see belongs to no texel of its map. Where nothing hides anything
+// (HIDDEN 0) the place alone tells.
 bool seen(View view, sampler2D layer, vec3 pos, out vec2 uv) {
-    float behind = behindAt(view, layer, pos, uv);
-    return all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0))) && abs(behind) <= kResidual;
+#if HIDDEN
+    bool shown = abs(behindAt(view, layer, pos, uv)) <= kResidual;
+#else
+    const bool shown = true;
+    uv = viewToUv(view, pos);
+#endif
+    return shown && all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
 }
 
 // Ends a ray that meets a receiver before `most`, or nothing at all. False: a caster comes first.
@@ -138,6 +144,7 @@ float absorb(float flux, float perM, float way) {
 }
 
 #if LONE
+const int kMostExits = 33;   // of the most reflections that may be asked for
 // One convex caster alone: what leaves it does not come back, and the way inside ends at the nearest plane ahead.
 void follow(vec3 origin, vec3 direction, Surface surface, int entry) {
     vec4 glass = glassAt(entry, surface.caster);
@@ -145,6 +152,10 @@ void follow(vec3 origin, vec3 direction, Surface surface, int entry) {
     g_tally.reflected += g_flux * in_.reflectance;
     float flux = g_flux * (1.0 - in_.reflectance), eta = glass.x / u_outsideIndex;
     vec3 at = surface.point, way = in_.transmitted;
+    // Where it leaves, and with how much: landed after the way inside, so that no lane waits for another's landing
+    vec3 exits[kMostExits], ways[kMostExits];
+    float fluxes[kMostExits];
+    int exitCount = 0;
     for (int bounce = 0; bounce <= u_bounces && flux > u_least * g_flux; ++bounce) {
         Surface exit = exitOf(surface.caster, at, way);
         at = exit.point;
@@ -153,11 +164,17 @@ void follow(vec3 origin, vec3 direction, Surface surface, int entry) {
         float R;
         refractDielectric(way, -exit.geometric, eta, outside, R);
         float leaves = flux * (1.0 - R);
-        if (leaves > 0.0) land(at, outside, leaves, kFar);
+        if (leaves > 0.0) {
+            exits[exitCount] = at;
+            ways[exitCount] = outside;
+            fluxes[exitCount] = leaves;
+            ++exitCount;
+        }
         flux -= leaves;
         way = reflect(way, exit.geometric);
     }
     g_tally.cut += flux;
+    for (int i = 0; i < exitCount; ++i) land(exits[i], ways[i], fluxes[i], kFar);
 }
 #else
 struct Branch {

@@ -17,7 +17,7 @@ enum Unit : GLuint { kReceivers, kCookie, kOuterReceivers, kTable, kSurfaces = k
 void PhotonPaths::run(const Inputs& in, const Outputs& out) {
     if (in.photons == 0) return;
     std::vector<gl::Flag> flags = in.surfaces.flags(in.exactReceivers);
-    flags.insert(flags.end(), {{"BANDS", in.bandShare > 0.0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}, {"RESIDUALS", 0}});
+    flags.insert(flags.end(), {{"BANDS", in.bandShare > 0.0 ? 1 : 0}, {"COOKIE", in.cookie ? 1 : 0}, {"HIDDEN", in.hidden ? 1 : 0}, {"RESIDUALS", 0}});
     const GLuint program = shaders_.program("photon_paths", flags);
     glUseProgram(program);
     const gl::Uniforms uniforms(program);

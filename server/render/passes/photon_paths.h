@@ -27,6 +27,7 @@ class PhotonPaths {
         bool continuous = false;
         double bandShare = 0.0;                              // > 0: a sum for each wavelength, whose share of the luminance this is
         bool exactReceivers = false;
+        bool hidden = true;                                  // a receiver may hide another from the light
         int bounces = 8, receiverSteps = 6;
         double fixedPerFlux = 1.0, ledgerPerFlux = 1.0;      // units per photon's flux: 1 at the brightest place of the view
         float reachM = 100.0f;                               // farther than any receiver
