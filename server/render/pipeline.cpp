@@ -267,7 +267,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
         const LightSide::Inputs in = inputs();
         const TracedLightSide::Inputs all{in, entry.exact(*request.scene), context.software()};
         if (facts.adding) tracedSide.add(all, timer, maps), tracedSide.collect(all, maps);
-        else if (unhashed) tracedSide.hash(all, maps);
+        else if (unhashed) tracedSide.complete(all, timer, maps);
         return maps;
     }
     plan = makePlan(facts, request);   // which wavelengths the light has to be fitted to

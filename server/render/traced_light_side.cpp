@@ -17,6 +17,7 @@ constexpr double kOuterWidth = 2.0;            // half as many texels a side; an
 constexpr int kCoarseGrid = 16;                // photons a side of the trace that the map's view is fitted to
 constexpr int kSpectraSoftware = 4, kSpectraHardware = 8;   // of a continuous spectrum, wavelengths a photon
 constexpr int kFirstSoftware = 128, kFirstHardware = 1024;  // photons a side of a light pose's first frame
+constexpr double kStillTimes = 16.0;           // as many photons for a still, where planes make them cheap
 constexpr std::uint64_t kMostAtOnce = 1u << 18;             // photons of a dispatch: drivers watch how long one takes
 constexpr double kAddMs = 35.0;                // of a frame that adds photons, for the photons alone: ten frames a second remain
 constexpr double kMilestone = 1.25;            // times as many photons until it is next asked whether that is enough
@@ -53,7 +54,8 @@ std::uint64_t TracedLightSide::firstPhotons(const Inputs& in, double met) const 
         return static_cast<std::uint64_t>(std::clamp(0.5 * transport.budgetMs / msPerPhoton_, 1024.0, 1048576.0));
     }
     const double grid = transport.photonGrid > 0 ? transport.photonGrid : in.software ? kFirstSoftware : kFirstHardware;
-    return static_cast<std::uint64_t>(std::ceil(grid * grid / met));
+    const double times = in.light.hash && transport.photonGrid == 0 && in.surfaces.convexOnly() ? kStillTimes : 1.0;
+    return static_cast<std::uint64_t>(std::ceil(times * grid * grid / met));
 }
 
 TracedLightSide::Fit TracedLightSide::fit(const Inputs& all) {
@@ -117,7 +119,7 @@ void TracedLightSide::begin(const Inputs& all, const Fit& fit, gl::StageTimer& t
     sums.emitters = fit.emitters;
     sums.extent = 0.0;
     for (const ExactEmitter& emitter : sums.emitters) sums.extent += emitter.extent;
-    sums.photons = 0, sums.milestone = firstPhotons(all, fit.met);
+    sums.photons = 0, sums.met = fit.met, sums.milestone = firstPhotons(all, fit.met);
     sums.ledger.fill(0.0);
     sums.entries = spectralEntries(out.wavelengths);
     sums.table.fill(in.scene, all.surfaces.casters(), sums.entries);
@@ -269,7 +271,17 @@ void TracedLightSide::traceBands(const Inputs& all, std::uint64_t photons, gl::S
     sums.ledger[layout::kLedgerDeposited] = inMaps / (sums.fixedPerFlux * static_cast<double>(wavelengths));
 }
 
-void TracedLightSide::hash(const Inputs& all, LightMaps& out) {
+void TracedLightSide::complete(const Inputs& all, gl::StageTimer& timer, LightMaps& out) {
+    ExactSums& sums = *out.exact;
+    const std::uint64_t wanted = firstPhotons(all, sums.met);
+    if (sums.photons >= wanted) return hash(all, out);
+    sums.milestone = wanted;
+    trace(all, wanted - sums.photons, 0, static_cast<int>(sums.entries.nm.size()), timer, out);
+    resolve(all, timer, out);
+    collect(all, out);
+}
+
+void TracedLightSide::hash(const Inputs& all, LightMaps& out) const {
     const std::size_t inner = texelsOf(all.light.transport.mapSize), outer = texelsOf(outerSizeOf(all.light.transport));
     out.mapHash = fnv1a(kFnvStart, readWords(out.exact->map, layout::kWideWords * inner));
     out.mapHash = fnv1a(out.mapHash, readWords(out.exact->outerMap, layout::kWideWords * outer));

@@ -34,6 +34,7 @@ struct ExactSums {
     double extent = 0.0;                   // of all emitters
     double fixedPerFlux = 1.0;             // units of the sums per photon's flux
     std::uint64_t photons = 0;             // sent out so far, whether or not they met their caster
+    double met = 1.0;                      // share of them that meet their caster
     std::uint64_t milestone = 0;           // photons after which it is next asked whether that is enough
     std::array<double, layout::kLedgerRows> ledger{};   // in photons
 };
@@ -64,13 +65,14 @@ class TracedLightSide {
     void begin(const Inputs& in, const Fit& fit, gl::StageTimer& timer, LightMaps& out);
     // More of them, as many as a frame has time for. Not for bands.
     void add(const Inputs& in, gl::StageTimer& timer, LightMaps& out);
-    // Of the sums so far, into mapHash: reads them back.
-    void hash(const Inputs& in, LightMaps& out);
+    // What a still is worth: the photons that its first frame would have had, and a hash of the sums, which are read back.
+    void complete(const Inputs& in, gl::StageTimer& timer, LightMaps& out);
     // Reads the last run's ledger; waits for the GPU, so call it when the frame is submitted.
     void collect(const Inputs& in, LightMaps& out);
 
    private:
     std::uint64_t firstPhotons(const Inputs& in, double met) const;
+    void hash(const Inputs& in, LightMaps& out) const;
     void trace(const Inputs& in, std::uint64_t photons, int firstEntry, int entries, gl::StageTimer& timer, LightMaps& out);
     void resolve(const Inputs& in, gl::StageTimer& timer, LightMaps& out);
     void traceBands(const Inputs& in, std::uint64_t photons, gl::StageTimer& timer, LightMaps& out);
