@@ -36,11 +36,12 @@ TEST_F(TracedTest, FramesAtRestAddPhotonsUntilTheErrorIsWhatWasAskedFor) {
     while (!frame.stats.convergence->converged && frames < 1000) {
         frame = pipeline->run(request);
         ++frames;
-        EXPECT_GT(frame.stats.convergence->photons, photons);
+        EXPECT_GE(frame.stats.convergence->photons, photons);   // the map may be done before its picture
         EXPECT_LE(ledgerGap(frame.stats.ledger), 1e-4);
         photons = frame.stats.convergence->photons;
     }
     EXPECT_TRUE(frame.stats.convergence->converged);
+    EXPECT_GT(photons, first.photons);
     EXPECT_LE(frame.stats.convergence->error, 0.2);
     EXPECT_LT(frame.stats.convergence->error, first.error);
     // What has converged is left alone.
