@@ -158,7 +158,8 @@ TEST_F(Shot, SameStateSameMap) {
 
 TEST_F(Shot, WaitsUntilAPictureHasConverged) {
     const std::vector<std::string> traced = {"--scene", "gem", "--width", "96", "--height", "96", "--set", "transport.mode=traced",
-                                             "--set", "transport.map_size=256", "--set", "transport.target_error=0.08"};
+                                             "--set", "transport.map_size=256", "--set", "transport.photon_grid=64",
+                                             "--set", "transport.target_error=0.08"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.end(), traced.begin(), traced.end());
         return shoot(more);
