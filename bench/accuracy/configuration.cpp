@@ -52,6 +52,7 @@ bool set(render::Transport& t, const std::string& key, const std::string& value)
     if (key == "steps") return parseInt(value, 1, 16, t.backSteps);
     if (key == "levels") return parseInt(value, 1, 6, t.hierarchyLevels);
     if (key == "gap_fill") return parseSwitch(value, t.gapFill);
+    if (key == "exact_receivers") return parseSwitch(value, t.exactReceivers);
     if (key == "filter") return parseSwitch(value, t.filter);
     return false;
 }
@@ -75,6 +76,7 @@ std::string Configuration::name() const {
                        " map " + std::to_string(t.mapSize);
     if (thesis && t.hierarchyLevels != 3) name += " levels " + std::to_string(t.hierarchyLevels);
     if (!thesis && !refined && t.bounces != 8) name += " bounces " + std::to_string(t.bounces);
+    if (t.exactReceivers) name += " exact receivers";
     if (refined && t.backSteps != 4) name += " steps " + std::to_string(t.backSteps);
     if (t.gapFill) name += " gap fill";
     if (!t.filter) name += " no filter";
@@ -107,7 +109,7 @@ tl::expected<Configuration, std::string> parseConfiguration(const std::string& t
 
 std::string configurationHelp() {
     return "mode=refined|thesis|traced|auto, wavelengths=1..64|continuous, grid=16..4096 (photons a side; thesis: texels a side of the "
-           "light's view), map=64..2048, steps=1..16 (on the back layer), levels=1..6 (thesis: hierarchy), bounces=0..32 (traced), gap_fill=on|off, "
+           "light's view), map=64..2048, steps=1..16 (on the back layer), levels=1..6 (thesis: hierarchy), bounces=0..32 (traced), exact_receivers=on|off (traced), gap_fill=on|off, "
            "filter=on|off";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace caustream::bench {
 
@@ -31,6 +32,21 @@ render::Request pictureRequest(const scene::Scene& scene, const Configuration& c
     request.sample = render::Sample::U8;
     request.width = request.height = size;
     return request;
+}
+
+std::vector<float> mapOnWindow(render::Pipeline& pipeline, const render::Request& request, const render::Frame& inner, const Window& window, int samples) {
+    std::vector<float> cells = resample(inner, window, samples);
+    if (!inner.stats.convergence && request.transport.mode != render::Mode::Traced) return cells;
+    render::Request around = request;
+    around.outerMap = true;
+    around.converge = false;
+    const std::vector<float> outer = resample(pipeline.run(around), window, samples);
+    std::transform(outer.begin(), outer.end(), cells.begin(), cells.begin(), std::plus<>());
+    return cells;
+}
+
+std::vector<float> mapOnWindow(render::Pipeline& pipeline, const render::Request& request, const Window& window, int samples) {
+    return mapOnWindow(pipeline, request, pipeline.run(request), window, samples);
 }
 
 FrameTime frameTime(const render::Frame& frame, bool software) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bench/accuracy/configuration.h"
+#include "bench/accuracy/window.h"
 #include "gl/context.h"
 #include "gl/shader_library.h"
 #include "render/pipeline.h"
@@ -31,6 +32,12 @@ class Renderer {
 // The spectral map in F32; a picture of `size` a side at 0 EV above the reference unless the request says otherwise.
 render::Request mapRequest(const scene::Scene& scene, const Configuration& configuration);
 render::Request pictureRequest(const scene::Scene& scene, const Configuration& configuration, int size);
+
+// The request's map over the window's cells as resample() has it. Of traced transport with the outer map, which holds what
+// bounces about, wherever it lands.
+std::vector<float> mapOnWindow(render::Pipeline& pipeline, const render::Request& request, const Window& window, int samples = 4);
+// The same where the frame of the inner map is there already.
+std::vector<float> mapOnWindow(render::Pipeline& pipeline, const render::Request& request, const render::Frame& inner, const Window& window, int samples = 4);
 
 // Milliseconds of a frame: stage timestamps on hardware, wall clock around a finish on software.
 struct FrameTime {

@@ -108,7 +108,7 @@ MapError measureError(Renderer& renderer, const Subject& subject, const Truth& t
     const render::Frame map = pipeline.run(mapRequest(subject.scene, configuration));
     error.photons = map.stats.photons;
     if (map.stats.error) error.estimate = map.stats.error->total;
-    std::vector<float> xyz = resample(map, truth.window);
+    std::vector<float> xyz = mapOnWindow(pipeline, mapRequest(subject.scene, configuration), map, truth.window);
     rgbToXyz(xyz, subject.light().spectrum);
     const tracer::Difference Y = tracer::difference(&xyz[area], &truth.xyz.values[area], cells, cells);
     error.luminance = Y.relativeL1, error.fluxRatio = Y.fluxRatio, error.worst = Y.worst;
@@ -120,7 +120,7 @@ MapError measureError(Renderer& renderer, const Subject& subject, const Truth& t
     render::Request bandsRequest = mapRequest(subject.scene, configuration);
     bandsRequest.transport.wavelengthsNm = bandsNm();
     bandsRequest.wavelengthBands = true;
-    const std::vector<float> bands = resample(pipeline.run(bandsRequest), truth.window);
+    const std::vector<float> bands = mapOnWindow(pipeline, bandsRequest, truth.window);
     for (std::size_t band = 0; band < bandsNm().size(); ++band) {
         const tracer::Difference d = tracer::difference(&bands[band * area], &truth.bands.values[band * area], cells, cells);
         error.bands += d.relativeL1 / static_cast<double>(bandsNm().size());

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+
+#include "bench/statistics.h"
 
 namespace caustream::bench {
 
@@ -10,8 +14,8 @@ namespace {
 constexpr double kRarer = 1.2;           // frames between two looks at the map grow with their number
 constexpr int kWarmUp = 3;
 
-std::vector<float> luminanceOf(const render::Frame& map, const Window& window, const scene::Light& light) {
-    std::vector<float> xyz = resample(map, window, 4);
+// Of a map in RGB on the window.
+std::vector<float> luminanceOf(std::vector<float> xyz, const Window& window, const scene::Light& light) {
     rgbToXyz(xyz, light.spectrum);
     const std::size_t area = window.weights().size();
     return {xyz.begin() + static_cast<std::ptrdiff_t>(area), xyz.begin() + static_cast<std::ptrdiff_t>(2 * area)};
@@ -36,6 +40,7 @@ AtRest comeToRest(Renderer& renderer, const Subject& subject, const Configuratio
 
     AtRest rest;
     Spent spent;
+    std::map<std::string, std::vector<double>> stages;
     double next = 1.0;
     for (int frames = 1;; ++frames) {
         request.converge = frames > 1;
@@ -47,13 +52,19 @@ AtRest comeToRest(Renderer& renderer, const Subject& subject, const Configuratio
         const std::uint64_t photons = stats.convergence ? stats.convergence->photons : stats.photons;
         const bool last = rest.converged || photons >= settings.mostPhotons || frames >= settings.mostFrames || spent.seconds > settings.mostSeconds;
         rest.ledger = stats.ledger;
+        for (const render::StageTime& stage : stats.stages) {
+            if (frames > 1) stages[stage.pass].push_back(stage.ms);
+        }
         if (frames < next && !last) continue;
         next = std::max(next + 1.0, kRarer * next);
         const render::Frame map = pipeline.run(look);
         if (rest.points.empty()) rest.window = subject.plane ? *subject.plane : Window::ofView(subject.light(), glm::dmat4(map.lightMatrix), settings.cells);
         rest.points.push_back({.frames = frames, .spent = spent, .photons = photons, .estimate = stats.convergence ? stats.convergence->error : 0.0,
-                               .luminance = luminanceOf(map, rest.window, subject.light())});
-        if (last) return rest;
+                               .luminance = luminanceOf(mapOnWindow(pipeline, look, map, rest.window), rest.window, subject.light())});
+        if (!last) continue;
+        for (const auto& [pass, ms] : stages) rest.stages.push_back({pass, median(ms)});
+        std::ranges::sort(rest.stages, std::greater{}, &render::StageTime::ms);
+        return rest;
     }
 }
 

@@ -34,6 +34,7 @@ struct AtRest {
     double worstLedgerGap = 0;           // of all frames
     render::EnergyLedger ledger;         // in the end
     bool converged = false;
+    std::vector<render::StageTime> stages;   // of a frame at rest, medians, longest first
 };
 
 // From a light pose that the pipeline has not seen; its programs are compiled and its images made before the clock starts.

@@ -45,6 +45,17 @@ std::string firstFrameTable(const std::string& scene, const std::vector<FirstFra
     return table(rows);
 }
 
+// Milliseconds of a frame at rest, pass by pass.
+std::string stageLines(const std::vector<SceneReport>& reports) {
+    std::string text = "Milliseconds of the passes of a frame at rest, medians:\n\n";
+    for (const SceneReport& r : reports) {
+        text += "- " + r.scene + ":";
+        for (const render::StageTime& stage : r.stages) text += format(" %s %.1f", stage.pass.c_str(), stage.ms);
+        text += "\n";
+    }
+    return text;
+}
+
 std::string claims(const std::vector<SceneReport>& reports) {
     std::string text;
     for (const SceneReport& r : reports) {
@@ -83,6 +94,7 @@ void converge(ConvergeOptions options) {
     std::vector<SceneReport> reports;
     for (const std::string& scene : options.scenes) reports.push_back(reportScene(renderer, scene, options.report));
     say(sceneTable(reports, options.report));
+    say(stageLines(reports));
     std::string claimed = claims(reports);
     if (options.references) {
         const std::vector<ReferenceRow> rows = compareReferences(renderer);
@@ -108,7 +120,9 @@ void addConverge(CLI::App& app) {
     command->add_option("--cells", report.cells, "cells a side that maps are compared on")->check(CLI::Range(16, 1024))->capture_default_str();
     command->add_option("--map", report.map, "texels a side")->check(CLI::Range(64, 2048))->capture_default_str();
     command->add_option("--bounces", report.bounces, "reflections inside")->check(CLI::Range(0, 32))->capture_default_str();
+    command->add_flag("--exact-receivers", report.exactReceivers, "receivers triangle by triangle, not through the map's view");
     command->add_option("--turns", options->turns, "first frames counted")->check(CLI::Range(3, 1000))->capture_default_str();
+    command->add_option("--seconds", report.mostSeconds, "most that a scene has to converge in")->check(CLI::Range(1.0, 3600.0))->capture_default_str();
     command->add_option("--photons", report.tracerPhotons, "of the reference tracer")->check(CLI::Range(1024, 1 << 30))->capture_default_str();
     command->add_option("--cache", report.cacheFolder, "where references are kept")->capture_default_str();
     command->add_option("--markdown", options->markdown, "file for the tables of docs/accuracy.md");

@@ -20,7 +20,7 @@ std::vector<ReferenceRow> compareReferences(Renderer& renderer) {
             configuration.transport.wavelengthsNm = bandsNm();
             render::Request request = mapRequest(subject.scene, configuration);
             request.wavelengthBands = true;
-            const std::vector<float> map = resample(renderer.pipeline(configuration, subject.fingerprint).run(request), *subject.plane, 8);
+            const std::vector<float> map = mapOnWindow(renderer.pipeline(configuration, subject.fingerprint), request, *subject.plane, 8);
             ReferenceRow row{.scene = scene, .mode = mode == render::Mode::Traced ? "traced" : "refined"};
             for (std::size_t i = 0; i < bands; ++i) {
                 const tracer::Difference d = tracer::difference(&map[i * area], &subject.storedBands->values[i * area], subject.plane->cells(), subject.plane->cells());

@@ -30,13 +30,15 @@ SceneReport reportScene(Renderer& renderer, const std::string& scene, const Repo
     configuration.transport.mode = render::Mode::Traced;
     configuration.transport.mapSize = settings.map;
     configuration.transport.bounces = settings.bounces;
+    configuration.transport.exactReceivers = settings.exactReceivers;
     std::fprintf(stderr, "%s: at rest\n", scene.c_str());
-    const AtRest rest = comeToRest(renderer, subject, configuration, {.pictureSize = settings.pictureSize, .cells = settings.cells});
+    const AtRest rest = comeToRest(renderer, subject, configuration, {.pictureSize = settings.pictureSize, .cells = settings.cells, .mostSeconds = settings.mostSeconds});
     const RestPoint& end = rest.points.back();
     SceneReport report{.scene = scene, .where = rest.window.ofPlane() ? "the floor" : "the light's view"};
     report.frames = end.frames, report.photons = end.photons, report.converged = rest.converged;
     report.secondsToEnd = end.spent.seconds, report.estimateAtEnd = end.estimate;
     report.framesPerSecond = end.frames / end.spent.seconds;
+    report.stages = rest.stages;
     report.ledgerGap = rest.worstLedgerGap;
     report.cut = rest.ledger.onCasters > 0.0 ? rest.ledger.cut / rest.ledger.onCasters : 0.0;
 

@@ -18,6 +18,7 @@ struct SceneReport {
     // The map at the end against the reference tracer, on cells of 4 x 4 of its texels or more
     double truth = 0, truthNoise = 0, flux = 0, ledgerGap = 0, cut = 0;
     std::string where;
+    std::vector<render::StageTime> stages;       // of a frame at rest
 
     bool fast() const { return secondsToGood > 0.0 && secondsToGood <= 3.0 && framesPerSecond >= 10.0; }
 };
@@ -25,7 +26,9 @@ struct SceneReport {
 struct ReportSettings {
     int pictureSize = 512, cells = 256;
     int map = 512, bounces = 8;
+    bool exactReceivers = false;
     double good = 0.02;
+    double mostSeconds = 60.0;                   // of frames at rest
     double referencePhotons = 8.0;               // times those at the end, for the own reference
     std::uint64_t tracerPhotons = 1u << 23;
     std::string cacheFolder;

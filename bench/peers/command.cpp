@@ -94,13 +94,13 @@ std::vector<Point> tracedPoints(const PeersOptions& options, const Subject& subj
             configuration.transport.wavelengthsNm = {reference.nm[band]};
             render::Request request = mapRequest(subject.scene, configuration);
             request.scene = std::make_shared<const scene::Scene>(withMovedLight(subject.scene, 1));
-            if (band == bands.front()) pipeline.run(request);   // makes the images
+            for (int i = 0; i < 2 && band == bands.front(); ++i) pipeline.run(request), request.scene = std::make_shared<const scene::Scene>(withMovedLight(subject.scene, 2));   // makes the images
             request.scene = std::make_shared<const scene::Scene>(subject.scene);
             const Clock clock;
             const render::Frame map = pipeline.run(request);
             point.spent += clock.spent();
             point.photons += map.stats.photons;
-            addError(point, &resample(map, *subject.plane, 8)[cells], reference, band, bands.size());   // of three alike channels, green
+            addError(point, &mapOnWindow(pipeline, request, map, *subject.plane, 8)[cells], reference, band, bands.size());   // of three alike channels, green
         }
         points.push_back(point);
         std::fprintf(stderr, "traced, %s: %.2f CPU s, %.4f\n", point.what.c_str(), point.spent.cpuSeconds, point.error);
