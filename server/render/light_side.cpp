@@ -16,8 +16,6 @@ namespace {
 constexpr int kSeenWavelengths = 16;     // of a continuous spectrum on the camera's side, which traces a few nodes of them
 constexpr int kCoarseGrid = 16;         // photons a side of the trace that the map's view is fitted to
 constexpr int kOuterMapSize = 64;        // holds half a per cent of the light: few photons, wide texels
-constexpr double kRoughnessUnit = 16.0;       // of its row in the ledger: map_resolve.comp
-constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one texel still fits 32 bits, roundings included
 
 static_assert(optics::kSpectrumSteps == layout::kSpectrumSteps);
 

@@ -120,5 +120,7 @@ optics::WavelengthSet seenWavelengths(const LightSide::Inputs& in, const optics:
 // A receiver that stands before nothing, seen from the light.
 bool shadesNothing(const LightSide::Inputs& in, const scene::Object& object);
 inline constexpr int kShadowSize = 1024;   // texels a side
+inline constexpr double kFixedRange = 2147483648.0;   // 2^31: all flux in one word still fits 32 bits, roundings included
+inline constexpr double kRoughnessUnit = 16.0;        // of its row in the ledger: map_resolve.comp
 
 }  // namespace caustream::render

@@ -38,14 +38,6 @@ Shown shownBy(const Request& request) {
     return shown;
 }
 
-std::string whyNoCaustic(const PlanFacts& facts) {
-    if (facts.casters == 0) {
-        return facts.idleCasters ? "every caster has the index of what is around it"
-               : facts.thinWalled ? "thin-walled casters bend no light" : "no caster in the scene";
-    }
-    return facts.castersLit == 0 ? "the light reaches no caster" : "no light that passes a caster lands on a receiver";
-}
-
 // Adds the rows of one plan.
 class Rows {
    public:
@@ -107,6 +99,14 @@ bool addLightSide(RenderPlan& plan, const PlanFacts& facts, const Request& reque
 }
 
 }  // namespace
+
+std::string whyNoCaustic(const PlanFacts& facts) {
+    if (facts.casters == 0) {
+        return facts.idleCasters ? "every caster has the index of what is around it"
+               : facts.thinWalled ? "thin-walled casters bend no light" : "no caster in the scene";
+    }
+    return facts.castersLit == 0 ? "the light reaches no caster" : "no light that passes a caster lands on a receiver";
+}
 
 void chooseWavelengths(RenderPlan& plan, const PlanFacts& facts, const Request& request) {
     const Transport& transport = request.transport;

@@ -55,6 +55,9 @@ struct RenderPlan {
 // The passes' names in order are those of passNames().
 RenderPlan makePlan(const PlanFacts& facts, const Request& request);
 
+// A sentence, where no light that passes a caster lands.
+std::string whyNoCaustic(const PlanFacts& facts);
+
 // How many wavelengths the light needs, whether all between them too, and why.
 void chooseWavelengths(RenderPlan& plan, const PlanFacts& facts, const Request& request);
 

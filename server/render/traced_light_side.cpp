@@ -25,8 +25,6 @@ constexpr double kTarget = 0.01;               // relative L1, unless asked for
 constexpr double kLeastMet = 1.0 / 16.0;       // of the photons: no more are sent out to hit a caster that fills less of its view
 constexpr double kEnough = 4.0;                // photons that keep four texels sharp
 constexpr double kPhotonUnits = 1048576.0;     // of the map for one photon of full flux: 2^44 of them fit 64 bits
-constexpr double kFixedRange = 2147483648.0;   // of a ledger's row in one frame
-constexpr double kRoughnessUnit = 16.0;        // of its row in the ledger: map_resolve.comp
 
 std::uint64_t nowNs() {
     return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());

@@ -8,14 +8,6 @@ namespace {
 
 constexpr int kFewTriangles = 64;   // are met sooner than the map's view is searched: 40% of photon_paths for the gem's floor
 
-std::string whyNoCaustic(const PlanFacts& facts) {
-    if (facts.casters + facts.mirrors == 0) {
-        return facts.idleCasters ? "every caster has the index of what is around it"
-               : facts.thinWalled ? "thin-walled casters bend no light" : "no caster in the scene";
-    }
-    return facts.castersLit == 0 ? "the light reaches no caster" : "no light that passes a caster lands on a receiver";
-}
-
 }  // namespace
 
 RenderPlan makeTracedPlan(const PlanFacts& facts, const Request& request) {
@@ -25,7 +17,9 @@ RenderPlan makeTracedPlan(const PlanFacts& facts, const Request& request) {
     chooseWavelengths(plan, facts, request);
     const Transport& transport = request.transport;
     const bool caustics = plan.casters > 0 && facts.castersLit > 0 && facts.lands;
-    const std::string none = whyNoCaustic(facts);
+    PlanFacts thrown = facts;
+    thrown.casters = plan.casters;
+    const std::string none = whyNoCaustic(thrown);
     plan.shadow = caustics || facts.shadowCasters;
     plan.exactReceivers = transport.exactReceivers || facts.shadowCasters || facts.receiverTriangles <= kFewTriangles;
     plan.hidden = facts.shadowCasters || request.forced.has(Omission::Walls);
