@@ -201,8 +201,8 @@ void TracedLightSide::resolve(const Inputs& all, gl::StageTimer& timer, LightMap
     ledgerPerFixed_ = kFixedRange / (static_cast<double>(sums.photons) * sums.fixedPerFlux);
     const double enough = kEnough * sums.spectra;
     timer.stage("map_adapt", [&] {
-        adapt_[0].run({sums.map, sums.landings, size, levels, enough}, kept_[0]);
-        adapt_[1].run({sums.outerMap, sums.outerLandings, outerSizeOf(in.transport), levels, enough}, kept_[1]);
+        adapt_[0].run({sums.map, sums.landings, size, levels, enough, ledgerPerFixed_}, kept_[0], ledger_);
+        adapt_[1].run({sums.outerMap, sums.outerLandings, outerSizeOf(in.transport), levels, enough}, kept_[1], ledger_);
     });
     timer.stage("map_resolve", [&] {
         const auto run = [&](std::size_t which, const View& view, const gl::Texture& receivers, int side, gl::Texture& concentration) {
@@ -304,7 +304,7 @@ void TracedLightSide::collect(const Inputs& all, LightMaps& out) {
         sums.ledger[layout::kLedgerDeposited] = deposited / (ledgerPerFixed_ * sums.fixedPerFlux);
         out.outerEmpty = rows[layout::kLedgerOuter] == 0.0;
         if (deposited > 0.0) {
-            out.error = estimateError({.halves = rows[layout::kLedgerHalves] / deposited,
+            out.error = estimateError({.halves = rows[levelsOf(in.transport) > 2 ? layout::kLedgerCells : layout::kLedgerHalves] / deposited,
                                        .roughness = kRoughnessUnit * rows[layout::kLedgerRoughness] / deposited,
                                        .grain = kRoughnessUnit * rows[layout::kLedgerGrain] / deposited,
                                        .spectralStep = 0.0});

@@ -50,7 +50,8 @@ LAYOUT_CONST kLedgerStepOf = 12;       // of this luminance
 LAYOUT_CONST kLedgerGrain = 13;        // what texels of the finest level differ from their neighbours in the row by, / 16
 LAYOUT_CONST kLedgerOuter = 14;        // the part of kLedgerDeposited in the outer map
 LAYOUT_CONST kLedgerCut = 15;          // exact paths with too many bounces, or too weak to follow
-LAYOUT_CONST kLedgerRows = 16;         // of 4 bytes: one cache line
+LAYOUT_CONST kLedgerCells = 16;        // traced: what the two halves differ by on cells of 4 x 4 texels
+LAYOUT_CONST kLedgerRows = 32;         // of 4 bytes: two cache lines
 LAYOUT_CONST kLedgerBanks = 32;
 
 // Histograms of residuals over tolerance (common/residuals.glsl): below 1e-6, six decades up to 1, 1 to 10, above.

@@ -19,10 +19,12 @@ class MapAdapt {
         int size;                    // texels a side of the finest level
         int levels;                  // 1..kMostLevels
         double enough;               // landings that keep four texels sharp
+        double ledgerPerFixed = 0.0; // 0: books nothing
     };
 
     explicit MapAdapt(gl::ShaderLibrary& shaders) : shaders_(shaders) {}
-    void run(const Inputs& in, KeptLevels& kept);
+    // Also books what the halves of the photons differ by on cells of 4 x 4 texels, if there are that many levels.
+    void run(const Inputs& in, KeptLevels& kept, const gl::Buffer& ledger);
 
    private:
     gl::ShaderLibrary& shaders_;
