@@ -15,7 +15,7 @@ render::Request requestOf(const char* name) {
     request.transport.mode = render::Mode::Auto;
     request.transport.mapSize = 128;
     request.transport.photonGrid = 64;
-    request.transport.targetError = 0.2;
+    request.transport.targetError = 0.03;
     return request;
 }
 
@@ -42,7 +42,7 @@ TEST_F(TracedTest, FramesAtRestAddPhotonsUntilTheErrorIsWhatWasAskedFor) {
     }
     EXPECT_TRUE(frame.stats.convergence->converged);
     EXPECT_GT(photons, first.photons);
-    EXPECT_LE(frame.stats.convergence->error, 0.2);
+    EXPECT_LE(frame.stats.convergence->error, 0.03);
     EXPECT_LT(frame.stats.convergence->error, first.error);
     // What has converged is left alone.
     EXPECT_EQ(pipeline->run(request).stats.convergence->photons, photons);
