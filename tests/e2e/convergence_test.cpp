@@ -14,7 +14,7 @@ constexpr std::uint32_t kLast = protocol::kFrameStill | protocol::kFrameConverge
 constexpr int kSilenceMs = 700;  // longer than the server waits before anything that it does by itself
 
 // A few frames to go: a small map, and an error that one frame's photons do not reach.
-const Json kTraced = {{"transport", {{"mode", "traced"}, {"map_size", 256}, {"budget_ms", 5}, {"target_error", 0.08}}},
+const Json kTraced = {{"transport", {{"mode", "traced"}, {"map_size", 256}, {"budget_ms", 5}, {"target_error", 0.015}}},
                       {"stream", {{"width", 96}, {"height", 64}, {"max_fps", 240}}}};
 
 Json moved(double x) { return {{"lights", {{"key", {{"position", {x, 1.9, -0.6}}}}}}}; }
@@ -76,7 +76,7 @@ TEST_F(Convergence, ComesNearerAndEndsWithOneLosslessStill) {
     EXPECT_LT(steps.front()["photons"], steps.back()["photons"]);
     EXPECT_GT(steps.front()["error"], steps.back()["error"]);
     EXPECT_LE(steps.back()["error"], steps.back()["target"]);
-    EXPECT_DOUBLE_EQ(steps.back()["target"], 0.08);
+    EXPECT_DOUBLE_EQ(steps.back()["target"], 0.015);
     EXPECT_EQ(steps.back()["converged"], true);
     EXPECT_EQ(viewer.stats.back()["frame_seq"], headers.back().frameSeq);
     EXPECT_FALSE(steps.front()["converged"]);

@@ -112,7 +112,7 @@ TEST_F(View, ADraggedLightMovesTheCausticTheOtherWay) {
 }
 
 TEST_F(View, ABarGrowsWhileThePictureConvergesAndGoesWhenItHas) {
-    const Background view = open("gem", {"transport.mode=traced", "transport.target_error=0.08", "transport.map_size=256"});
+    const Background view = open("gem", {"transport.mode=traced", "transport.target_error=0.012", "transport.map_size=256"});
     double first = -1.0, longest = -1.0;
     bool gone = false;
     for (int i = 0; i < 900 && !gone; ++i) {
