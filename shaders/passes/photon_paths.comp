@@ -111,7 +111,15 @@ bool land(vec3 origin, vec3 direction, float flux, float most) {
     }
     vec3 pos = (u_mapView.worldToView * vec4(origin + ground.t * direction, 1.0)).xyz;
     vec2 uv;
-    if (u_mapView.perspective && pos.z >= 0.0) g_tally.left += flux;
+#if HIDDEN
+    // A side that faces away from the light is not the one that its map shows, however near that is.
+    vec3 against = mat3(u_mapView.worldToView) * ground.geometric;
+    if (dot(ground.geometric, direction) > 0.0) against = -against;
+    bool away = dot(against, u_mapView.perspective ? -pos : vec3(0.0, 0.0, 1.0)) <= 0.0;
+#else
+    const bool away = false;
+#endif
+    if (away || (u_mapView.perspective && pos.z >= 0.0)) g_tally.left += flux;
     else if (seen(u_mapView, u_receivers, pos, uv)) deposit(uv, false, flux);
     else if (seen(u_outerView, u_outerReceivers, pos, uv)) deposit(uv, true, flux);
     else g_tally.left += flux;

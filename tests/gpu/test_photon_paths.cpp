@@ -114,5 +114,20 @@ TEST_F(PhotonPathsTest, GlassOfTheOutsidesIndexIsNotThere) {
     EXPECT_NEAR(traced.ledger[layout::kLedgerReflected] / onCasters, 0.0, 1e-6);
 }
 
+// A mirror throws light up at the underside of a thin board, whose upper side is what the light sees there.
+TEST_F(PhotonPathsTest, LightOnTheBackOfABoardIsNotOnItsFront) {
+    SyntheticScene parts;
+    scene::Material mirror = stability::white();
+    mirror.mirror = true;
+    const int board = parts.material(stability::white());
+    parts.addQuad(parts.material(mirror), {-0.2f, 0, 0.2f}, {0.4f, 0, 0}, {0, 0, -0.4f});
+    parts.addBox(board, {0.3f, 1.5f, -1.0f}, {2.0f, 1.502f, 1.0f});
+    const Traced traced = trace(stability::finish(parts, stability::spotAbove({-2, 3, 0}, {0, 0, 0}, 40.0f)), {kPhotons});
+    const double onCasters = traced.ledger[layout::kLedgerOnCasters];
+    ASSERT_GT(onCasters, 0.0);
+    EXPECT_EQ(luminance(traced.map), 0.0);
+    EXPECT_NEAR(traced.ledger[layout::kLedgerLeftMap] / onCasters, 1.0, 0.05);   // what the mirror keeps is absorbed
+}
+
 }  // namespace
 }  // namespace caustream::tests
