@@ -47,7 +47,7 @@ SceneReport reportScene(Renderer& renderer, const std::string& scene, const Repo
     Configuration longer = configuration;
     longer.transport.targetError = 1e-4;
     renderer.forget();
-    const AtRest reference = comeToRest(renderer, subject, longer, {.cells = settings.cells, .pictures = false,
+    const AtRest reference = comeToRest(renderer, subject, longer, {.cells = settings.cells, .mostSeconds = 3.0 * settings.mostSeconds, .pictures = false,
                                         .mostPhotons = static_cast<std::uint64_t>(settings.referencePhotons * static_cast<double>(end.photons))});
     const float* own = reference.points.back().luminance.data();
     report.errorAtEnd = relativeL1(end.luminance, own);
@@ -70,6 +70,8 @@ SceneReport reportScene(Renderer& renderer, const std::string& scene, const Repo
     report.truth = d.relativeL1, report.flux = d.fluxRatio;
     report.truthNoise = image.relativeL1[1] / k;   // of independent cells
     renderer.forget();
+    std::fprintf(stderr, "%s: %.4f against the tracer, whose noise is %.4f; error %.4f, estimated %.4f after %.1f s\n", scene.c_str(), report.truth, report.truthNoise,
+                 report.errorAtEnd, report.estimateAtEnd, report.secondsToEnd);
     return report;
 }
 
