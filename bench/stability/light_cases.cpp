@@ -59,7 +59,11 @@ std::vector<Case> lightCases() {
 
     // Distance from the sphere's surface, the cone just around it or 60 degrees
     for (const float gap : {0.0f, 1e-6f, 1e-4f, 1e-3f, 1e-2f, 0.1f}) {
-        add(numbered("light-at", gap), [=] { return lit(spotAbove({0, 0.8f + gap, 0}, {0, 0, 0}, 60.0f)); });
+        add(numbered("light-at", gap), [=] {
+            Setup setup = lit(spotAbove({0, 0.8f + gap, 0}, {0, 0, 0}, 60.0f));
+            if (gap == 0.0f) setup.jumps = "a step leads into the glass or out of it";
+            return setup;
+        });
     }
     for (const float distance : {10.0f, 1e3f, 1e5f}) {
         add(numbered("light-far", distance), [=] {
