@@ -9,21 +9,6 @@ namespace {
 
 constexpr int kAround = 96;  // with the profile below: about 12,000 faces, as the thesis's 12,137
 
-// `segments` steps from `a` to `b`, a not included when `curve` has points already.
-void lineTo(Profile& curve, const glm::dvec2& b, int segments) {
-    const glm::dvec2 a = curve.back();
-    for (int i = 1; i <= segments; ++i) curve.push_back(glm::mix(a, b, static_cast<double>(i) / segments));
-}
-
-// A quadratic Bezier arc.
-void bendTo(Profile& curve, const glm::dvec2& control, const glm::dvec2& b, int segments) {
-    const glm::dvec2 a = curve.back();
-    for (int i = 1; i <= segments; ++i) {
-        const double t = static_cast<double>(i) / segments;
-        curve.push_back(glm::mix(glm::mix(a, control, t), glm::mix(control, b, t), t));
-    }
-}
-
 // (radius, height) in metres, from the middle of the base outside to the middle of the drink's surface. Two curves: the
 // surface of the drink meets the wall at an edge.
 std::vector<Profile> glassProfile() {

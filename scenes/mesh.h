@@ -34,6 +34,9 @@ Mesh torus(double majorRadius, double minorRadius, int around, int across);
 
 // (radius, height) points of a smooth curve.
 using Profile = std::vector<glm::dvec2>;
+// Goes on from the profile's last point in `segments` steps: straight to `b`, along a quadratic Bezier arc.
+void lineTo(Profile& curve, const glm::dvec2& b, int segments);
+void bendTo(Profile& curve, const glm::dvec2& control, const glm::dvec2& b, int segments);
 // Turns curves around the y axis, `around` steps: normals are smooth along each curve, with an edge where one ends and
 // the next begins. From the axis at the bottom, outside, to the axis at the top: closed and outside out.
 Mesh lathe(const std::vector<Profile>& curves, int around);

@@ -158,4 +158,17 @@ double signedVolume(const Mesh& mesh) {
     return volume;
 }
 
+void lineTo(Profile& curve, const glm::dvec2& b, int segments) {
+    const glm::dvec2 a = curve.back();
+    for (int i = 1; i <= segments; ++i) curve.push_back(glm::mix(a, b, static_cast<double>(i) / segments));
+}
+
+void bendTo(Profile& curve, const glm::dvec2& control, const glm::dvec2& b, int segments) {
+    const glm::dvec2 a = curve.back();
+    for (int i = 1; i <= segments; ++i) {
+        const double t = static_cast<double>(i) / segments;
+        curve.push_back(glm::mix(glm::mix(a, control, t), glm::mix(control, b, t), t));
+    }
+}
+
 }  // namespace caustream::scenes

@@ -16,19 +16,6 @@ constexpr double kFull = 0.078;   // height of the water
 // Radius of the outer wall at a height.
 double outer(double y) { return glm::mix(kFoot, kRim, y / kHeight); }
 
-void lineTo(Profile& curve, const glm::dvec2& b, int segments) {
-    const glm::dvec2 a = curve.back();
-    for (int i = 1; i <= segments; ++i) curve.push_back(glm::mix(a, b, static_cast<double>(i) / segments));
-}
-
-void bendTo(Profile& curve, const glm::dvec2& control, const glm::dvec2& b, int segments) {
-    const glm::dvec2 a = curve.back();
-    for (int i = 1; i <= segments; ++i) {
-        const double t = static_cast<double>(i) / segments;
-        curve.push_back(glm::mix(glm::mix(a, control, t), glm::mix(control, b, t), t));
-    }
-}
-
 // From the middle of the foot outside, over the rim, to the middle of the bottom inside.
 std::vector<Profile> tumbler() {
     Profile curve{{0.0, 0.0}};
