@@ -88,6 +88,9 @@ ClientMessage decodeAssetEnd(Fields& in) {
 ClientMessage decodeAssetAbort(Fields& in) {
     return AssetAbort{in.at("asset").u32()};
 }
+ClientMessage decodeRecord(Fields& in) {
+    return Record{requestId(in), in.at("on").boolean()};
+}
 ClientMessage decodePing(Fields& in) {
     return Ping{in.at("t_us").integer(0, kMaxSafeInteger)};
 }
@@ -104,6 +107,7 @@ constexpr Op<ClientMessage> kOps[] = {
     {"asset.begin", decodeAssetBegin},
     {"asset.end", decodeAssetEnd},
     {"asset.abort", decodeAssetAbort},
+    {"record", decodeRecord},
     {"ping", decodePing},
 };
 
@@ -182,6 +186,9 @@ std::string encode(const AssetEnd& end) {
 }
 std::string encode(const AssetAbort& abort) {
     return text({{"op", "asset.abort"}, {"asset", abort.asset}});
+}
+std::string encode(const Record& record) {
+    return text({{"op", "record"}, {"id", record.id}, {"on", record.on}});
 }
 std::string encode(const Ping& ping) {
     return text({{"op", "ping"}, {"t_us", ping.tUs}});

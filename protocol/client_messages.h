@@ -93,13 +93,19 @@ struct AssetAbort {
     bool operator==(const AssetAbort&) const = default;
 };
 
+struct Record {  // what this session says from now on goes to a file on the server
+    std::uint32_t id = 0;
+    bool on = true;
+    bool operator==(const Record&) const = default;
+};
+
 struct Ping {
     std::uint64_t tUs = 0;
     bool operator==(const Ping&) const = default;
 };
 
 using ClientMessage = std::variant<Hello, Update, Input, StreamStart, StreamPause, StreamResume, FrameRequest, Ack,
-                                   AssetBegin, AssetEnd, AssetAbort, Ping>;
+                                   AssetBegin, AssetEnd, AssetAbort, Record, Ping>;
 
 // Never throws. `strict`: what this connection's hello asked for.
 tl::expected<ClientMessage, DecodeError> decodeClientMessage(std::string_view text, const Limits& limits = {},
@@ -116,6 +122,7 @@ std::string encode(const Ack& message);
 std::string encode(const AssetBegin& message);
 std::string encode(const AssetEnd& message);
 std::string encode(const AssetAbort& message);
+std::string encode(const Record& message);
 std::string encode(const Ping& message);
 std::string encode(const ClientMessage& message);
 

@@ -19,6 +19,9 @@ struct Limits {
     std::size_t framePayloadBytes = 256u << 20;
     std::uint32_t bands = 64;
     std::uint32_t sessions = 8;
+    std::size_t viewerBytes = 1u << 30;       // estimated, of one viewer's scene, maps and pictures; beyond: busy
+    std::size_t assetCacheBytes = 512u << 20; // uploaded scenes that are kept though no one shows them
+    std::uint32_t gpuMsPerS = 0;              // GPU time that one viewer gets in a second; 0: no limit
     std::uint32_t messagesPerS = 300;  // per connection
     std::uint32_t helloS = 5;          // from connection to hello
     std::uint32_t pingS = 15;          // silence after which a side pings

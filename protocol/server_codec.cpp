@@ -43,6 +43,7 @@ ServerMessage decodeOk(Fields& in) {
     if (const auto v = in.find("sha256"))
         ok.report = AssetReport{v->sha256(), in.at("meshes").u32(), in.at("vertices").u32(), in.at("triangles").u32(),
                                 in.at("warnings").texts(kListCount, kSentenceBytes)};
+    if (const auto v = in.find("recording")) ok.recording = v->text(kNameBytes, 1);
     if (const auto v = in.find("frame_seq")) ok.frame = FrameReply{v->u32(1), in.at("map_hash").text(16, 16)};
     return ok;
 }
@@ -143,6 +144,13 @@ Json toJson(const Convergence& convergence) {
             {"converged", convergence.converged}};
 }
 
+Drops decodeDrops(const Item& item) {
+    Fields in(item);
+    Drops drops{in.at("replaced").u32(), in.at("outdated").u32()};
+    in.finish();
+    return drops;
+}
+
 ServerMessage decodeStats(Fields& in) {
     Stats stats;
     stats.frameSeq = in.at("frame_seq").u32();
@@ -158,6 +166,13 @@ ServerMessage decodeStats(Fields& in) {
     stats.window = in.at("window").u32();
     stats.dropped = in.at("dropped").u32();
     stats.rttMs = in.at("rtt_ms").number(0, kAnyNumber);
+    // A server of before these were sent leaves them out.
+    if (const auto v = in.find("base_rtt_ms")) stats.baseRttMs = v->number(0, kAnyNumber);
+    if (const auto v = in.find("hold_ms")) stats.holdMs = v->number(0, kAnyNumber);
+    if (const auto v = in.find("send_ms")) stats.sendMs = v->number(0, kAnyNumber);
+    if (const auto v = in.find("age_ms")) stats.ageMs = v->number(0, kAnyNumber);
+    if (const auto v = in.find("level")) stats.level = v->u32(0, 255);
+    if (const auto v = in.find("drops")) stats.drops = decodeDrops(*v);
     stats.exposureEv = in.at("exposure_ev").number(-kAnyNumber, kAnyNumber);
     stats.warnings = in.at("warnings").texts(kListCount, kSentenceBytes);
     return stats;
@@ -225,6 +240,7 @@ std::string encode(const Ok& ok) {
                      {"vertices", ok.report->vertices},
                      {"triangles", ok.report->triangles},
                      {"warnings", ok.report->warnings}});
+    putOptional(json, "recording", ok.recording);
     if (ok.frame) json.update({{"frame_seq", ok.frame->frameSeq}, {"map_hash", ok.frame->mapHash}});
     return text(json);
 }
@@ -286,6 +302,12 @@ std::string encode(const Stats& stats) {
                  {"window", stats.window},
                  {"dropped", stats.dropped},
                  {"rtt_ms", stats.rttMs},
+                 {"base_rtt_ms", stats.baseRttMs},
+                 {"hold_ms", stats.holdMs},
+                 {"send_ms", stats.sendMs},
+                 {"age_ms", stats.ageMs},
+                 {"level", stats.level},
+                 {"drops", {{"replaced", stats.drops.replaced}, {"outdated", stats.drops.outdated}}},
                  {"exposure_ev", stats.exposureEv},
                  {"warnings", stats.warnings}};
     if (stats.ledger) json["ledger"] = toJson(*stats.ledger);

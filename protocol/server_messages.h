@@ -62,6 +62,7 @@ struct Ok {
     std::optional<AssetOffer> offer;
     std::optional<AssetReport> report;
     std::optional<FrameReply> frame;
+    std::optional<std::string> recording;  // answers record: the file's name on the server
     bool operator==(const Ok&) const = default;
 };
 
@@ -177,6 +178,11 @@ struct Convergence {  // of a traced map, or of one that would be traced if noth
     bool converged = false;     // more frames of the same state would not differ by more than the target
     bool operator==(const Convergence&) const = default;
 };
+struct Drops {  // frames drawn and never sent, by cause
+    std::uint32_t replaced = 0;  // by a newer one, before the socket took them
+    std::uint32_t outdated = 0;  // drawn at rest, and then something moved
+    bool operator==(const Drops&) const = default;
+};
 struct Stats {  // of the newest frame
     std::uint32_t frameSeq = 0;
     std::vector<StageTime> stages;
@@ -189,6 +195,11 @@ struct Stats {  // of the newest frame
     double renderMs = 0.0, encodeMs = 0.0;
     std::uint32_t window = 0, dropped = 0;  // acknowledgement window; frames replaced before they were sent
     double rttMs = 0.0;                     // 0: not known yet
+    double baseRttMs = 0.0;                 // the least of the last 30 s; 0: not known yet
+    double holdMs = 0.0, sendMs = 0.0;      // change -> its drawing begins; encoded -> handed to the socket
+    double ageMs = 0.0;                     // newest acknowledged frame: from the change it shows; 0: not known yet
+    std::uint32_t level = 255;              // of the quality ladder, 0 the best; 255: fixed
+    Drops drops;
     double exposureEv = 0.0;                // the one used
     std::vector<std::string> warnings;
     bool operator==(const Stats&) const = default;

@@ -20,6 +20,9 @@ void eachLimit(AnyLimits& limits, Visit visit) {
     visit("frame_payload_bytes", limits.framePayloadBytes);
     visit("bands", limits.bands);
     visit("sessions", limits.sessions);
+    visit("viewer_bytes", limits.viewerBytes);
+    visit("asset_cache_bytes", limits.assetCacheBytes);
+    visit("gpu_ms_per_s", limits.gpuMsPerS);
     visit("messages_per_s", limits.messagesPerS);
     visit("hello_s", limits.helloS);
     visit("ping_s", limits.pingS);

@@ -50,6 +50,9 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
         ->check(CLI::ExistingDirectory);
     app.add_option("--log-level", level, "debug, info, warning or error")->capture_default_str();
     app.add_option("--max-sessions", config.maxSessions, "viewers at once")->check(CLI::Range(1, 64))->capture_default_str();
+    app.add_option("--test-frame-bytes", config.testFrameBytes, "send noise of so many bytes a frame instead of pictures: to measure links")
+        ->check(CLI::Range(0, 64 << 20));
+    app.add_option("--test-frame-ms", config.testFrameMs, "what drawing one of those takes")->check(CLI::Range(0, 10000));
     app.add_option("--plan", config.planScene, "a scene or a GLB file: print what its frames run, leave out, and why");
     std::vector<std::string> settings;
     app.add_option("--set", settings, "with --plan: PATH=VALUE, a value of the state document; repeatable")

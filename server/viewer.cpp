@@ -219,6 +219,10 @@ void Viewer::on(const protocol::Ack& ack) {
     connection_.requestWrite();
 }
 
+void Viewer::on(const protocol::Record& record) {
+    refuse(problem(ErrorCode::Unsupported, "this server records nothing", "op", record.id));
+}
+
 void Viewer::on(const protocol::Ping& ping) { send(protocol::Pong{ping.tUs, session::nowUs()}); }
 
 std::optional<session::Outgoing> Viewer::next() {

@@ -75,6 +75,7 @@ class Viewer {
     void on(const protocol::AssetBegin& begin);
     void on(const protocol::AssetEnd& end);
     void on(const protocol::AssetAbort& abort);
+    void on(const protocol::Record& record);
     void on(const protocol::Ping& ping);
     void chunk(std::string_view message);
 

@@ -50,7 +50,8 @@ TEST(ClientMessage, MissingRequiredFieldIsNamed) {
     for (const char* field : {"id", "sha256", "size"}) tryWithout(samples[9].text, field);
     for (const char* field : {"id", "asset"}) tryWithout(samples[10].text, field);
     tryWithout(samples[11].text, "asset");
-    tryWithout(samples[12].text, "t_us");
+    for (const char* field : {"id", "on"}) tryWithout(samples[12].text, field);
+    tryWithout(samples[13].text, "t_us");
 }
 
 TEST(ClientMessage, IntegersNeitherWrapNorTruncate) {

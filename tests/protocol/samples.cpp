@@ -85,6 +85,12 @@ Stats fullStats() {
     stats.window = 2;
     stats.dropped = 1;
     stats.rttMs = 4.5;
+    stats.baseRttMs = 1.5;
+    stats.holdMs = 0.5;
+    stats.sendMs = 0.25;
+    stats.ageMs = 60.5;
+    stats.level = 3;
+    stats.drops = {1, 2};
     stats.exposureEv = -1.5;
     stats.warnings = {"two lights"};
     return stats;
@@ -112,6 +118,7 @@ const std::vector<MessageSample<ClientMessage>>& clientSamples() {
          R"({"id":10,"mime":"model/gltf-binary","op":"asset.begin","sha256":")" + kHash + R"(","size":67108864})"},
         {AssetEnd{11, 3}, R"({"asset":3,"id":11,"op":"asset.end"})"},
         {AssetAbort{3}, R"({"asset":3,"op":"asset.abort"})"},
+        {Record{12, true}, R"({"id":12,"on":true,"op":"record"})"},
         {Ping{12}, R"({"op":"ping","t_us":12})"},
     };
     return samples;
@@ -122,10 +129,10 @@ const std::vector<MessageSample<ServerMessage>>& serverSamples() {
         {fullWelcome(),
          R"({"build":"0.1.0","caps":["jpeg"],"glasses":[{"dispersion":["cauchy",1.5046,0.0042],"name":"BK7"},)"
          R"({"dispersion":["abbe",1.62,36.0],"name":"flint"}],"gpu":"llvmpipe","heartbeat_s":15,"id":1,"limits":{)"
-         R"("asset_bytes":67108864,"bands":64,"binary_bytes":1048576,"chunk_bytes":262144,"credit_bytes":1048576,)"
+         R"("asset_bytes":67108864,"asset_cache_bytes":536870912,"bands":64,"binary_bytes":1048576,"chunk_bytes":262144,"credit_bytes":1048576,)"
          R"("dead_s":30,"depth":32,"frame_max_side":4096,"frame_min_side":16,"frame_payload_bytes":268435456,)"
-         R"("frame_pixels":8300000,"hello_s":5,"idle_close_s":3600,"idle_pause_s":600,"messages_per_s":300,"ping_s":15,)"
-         R"("resume_s":600,"server_text_bytes":4194304,"sessions":8,"state_bytes":32768,"text_bytes":65536},)"
+         R"("frame_pixels":8300000,"gpu_ms_per_s":0,"hello_s":5,"idle_close_s":3600,"idle_pause_s":600,"messages_per_s":300,"ping_s":15,)"
+         R"("resume_s":600,"server_text_bytes":4194304,"sessions":8,"state_bytes":32768,"text_bytes":65536,"viewer_bytes":1073741824},)"
          R"("missing_assets":[")" +
              kHash +
              R"("],"op":"welcome","passes":["photon_list"],"protocol":"caustream.v1","resumed":true,"rev":3,)"
@@ -136,6 +143,7 @@ const std::vector<MessageSample<ServerMessage>>& serverSamples() {
         {Ok{4, {}, {}, AssetReport{kHash, 2, 300, 96, {"flat normals"}}},
          R"({"id":4,"meshes":2,"op":"ok","sha256":")" + kHash +
              R"(","triangles":96,"vertices":300,"warnings":["flat normals"]})"},
+        {Ok{6, {}, {}, {}, {}, "s1-1.jsonl"}, R"({"id":6,"op":"ok","recording":"s1-1.jsonl"})"},
         {Ok{5, {}, {}, {}, FrameReply{17, "0123456789abcdef"}},
          R"({"frame_seq":17,"id":5,"map_hash":"0123456789abcdef","op":"ok"})"},
         {ErrorMessage{6, ErrorCode::OutOfRange, "too far", "camera.eye[1]", true, 250},
@@ -159,13 +167,13 @@ const std::vector<MessageSample<ServerMessage>>& serverSamples() {
         {Status{Status::Level::Warning, "gpu", "software rendering"},
          R"({"key":"gpu","level":"warning","message":"software rendering","op":"status"})"},
         {fullStats(),
-         R"({"choice":"grid 256: the most that 16 ms allow","convergence":{"converged":true,"error":0.0625,)"
-         R"("photons":9007199254740991,"progress":0.25,"target":0.015625},"dropped":1,"encode_ms":2.25,)"
-         R"("error":{"sampling":0.03125,"spectral":0.0625,"total":0.125},"exposure_ev":-1.5,"frame_seq":12,"ledger":{"absorbed":0.25,"cut":0.015625,"deposited":7.0,)"
+         R"({"age_ms":60.5,"base_rtt_ms":1.5,"choice":"grid 256: the most that 16 ms allow","convergence":{"converged":true,"error":0.0625,)"
+         R"("photons":9007199254740991,"progress":0.25,"target":0.015625},"dropped":1,"drops":{"outdated":2,"replaced":1},"encode_ms":2.25,)"
+         R"("error":{"sampling":0.03125,"spectral":0.0625,"total":0.125},"exposure_ev":-1.5,"frame_seq":12,"hold_ms":0.5,"ledger":{"absorbed":0.25,"cut":0.015625,"deposited":7.0,)"
          R"("left_map":0.03125,"no_receiver":2.0,"on_casters":8.0,"reflected":0.5,"rejected":0.0625,)"
-         R"("total_reflection":0.125},"op":"stats","photons":25000,"plan":[{"pass":"photon_trace",)"
+         R"("total_reflection":0.125},"level":3,"op":"stats","photons":25000,"plan":[{"pass":"photon_trace",)"
          R"("reason":"the light moved","run":true,"without":["absorption: none"]},{"pass":"gap_fill","reason":"not asked for","run":false}],)"
-         R"("render_ms":30.5,"rtt_ms":4.5,"stages":[{"ms":3.5,"pass":"photon_trace"}],"warnings":["two lights"],"window":2})"},
+         R"("render_ms":30.5,"rtt_ms":4.5,"send_ms":0.25,"stages":[{"ms":3.5,"pass":"photon_trace"}],"warnings":["two lights"],"window":2})"},
         {Goaway{Goaway::Reason::Takeover, 100, 50},
          R"({"jitter_ms":50,"op":"goaway","reason":"takeover","reconnect_ms":100})"},
     };
