@@ -40,6 +40,7 @@ std::string readToken(const std::string& path) {
 std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     Config config;
     std::string level = "info", tokenFile;
+    std::size_t viewerMb = 1024;
     CLI::App app(kAbout, "caustream-server");
     app.add_option("--port", config.port, "TCP port; 0 takes any free one")->check(CLI::Range(0, 65535))->capture_default_str();
     app.add_option("--bind", config.bind, "IPv4 address to listen on; another than loopback needs --token-file")->capture_default_str();
@@ -50,6 +51,11 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
         ->check(CLI::ExistingDirectory);
     app.add_option("--log-level", level, "debug, info, warning or error")->capture_default_str();
     app.add_option("--max-sessions", config.maxSessions, "viewers at once")->check(CLI::Range(1, 64))->capture_default_str();
+    app.add_option("--gpu-ms-per-s", config.gpuMsPerS, "of each second, the most GPU time that one viewer gets; 0: no limit")
+        ->check(CLI::Range(0, 1000));
+    app.add_option("--viewer-mb", viewerMb, "memory that one viewer's scene, maps and pictures may take, estimated")
+        ->check(CLI::Range(16, 1 << 20))
+        ->capture_default_str();
     app.add_option("--test-frame-bytes", config.testFrameBytes, "send noise of so many bytes a frame instead of pictures: to measure links")
         ->check(CLI::Range(0, 64 << 20));
     app.add_option("--test-frame-ms", config.testFrameMs, "what drawing one of those takes")->check(CLI::Range(0, 10000));
@@ -67,6 +73,7 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& problem) {
         throw Error(std::string("command line; ") + problem.what() + "; try --help");
     }
+    config.viewerBytes = viewerMb << 20;
     if (const auto known = log::levelFromName(level)) {
         config.logLevel = *known;
     } else {

@@ -18,6 +18,8 @@ struct Config {
     std::string shaderDir;        // empty: the shaders in the program
     log::Level logLevel = log::Level::Info;
     int maxSessions = 8;
+    int gpuMsPerS = 0;               // GPU time that one viewer gets in a second; 0: no limit
+    std::size_t viewerBytes = 1u << 30;  // estimated, that one viewer may take
     std::size_t testFrameBytes = 0;  // frames are that many bytes of noise instead of pictures; 0: pictures
     int testFrameMs = 0;             // and take this long to draw
     std::string planScene;        // print its plan instead of serving: a built-in scene's name or a GLB file

@@ -33,21 +33,61 @@ std::uint32_t flagsOf(const FrameJob& job, const std::optional<render::Convergen
     return job.still ? protocol::kFrameStill : 0u;
 }
 
-session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& frame, protocol::Encoding encoding,
+// What of a frame's time a smaller picture would save.
+double pictureMs(const render::FrameStats& stats, double encodeMs) {
+    double ms = encodeMs;
+    for (const render::StageTime& stage : stats.stages) {
+        const std::string_view pass = stage.pass;
+        const bool pixels = pass.starts_with("camera_") || pass.ends_with("_refraction") || pass == "thesis_receivers" ||
+                            pass == "present" || pass == "read_back";
+        ms += pixels ? stage.ms : 0.0;
+    }
+    return ms;
+}
+
+// How this frame is encoded: as its view says, as its level of the ladder, or without loss because nothing follows it.
+stream::EncodeSettings encodingOf(const FrameJob& job, const std::optional<render::Convergence>& reached) {
+    const View& view = *job.shown.view;
+    stream::EncodeSettings settings = job.lossless || job.endsConvergence(reached) ? view.encodeLast : view.encode;
+    if (job.level != stream::Ladder::kFixed) {
+        settings.jpegQuality = stream::Ladder::at(job.level).jpegQuality;
+    }
+    return settings;
+}
+
+render::Request requestOf(const FrameJob& job) {
+    render::Request request = job.shown.view->request;
+    // An answer names its map's hash; the map itself has no anti-aliasing to pay for.
+    request.still = job.still || (job.requestId && request.target == render::Target::Spectral);
+    request.converge = job.converge;
+    if (job.level != stream::Ladder::kFixed) {
+        const auto size = stream::Ladder::scaled({request.width, request.height}, job.level);
+        request.width = size.width;
+        request.height = size.height;
+    }
+    return request;
+}
+
+session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& frame, const stream::EncodeSettings& settings,
                                      stream::Encoded&& encoded) {
     session::OutgoingFrame outgoing;
-    outgoing.header = frameHeader(*job.shown.view, frame, encoding);
+    outgoing.header = frameHeader(*job.shown.view, frame, settings, job.level);
     protocol::FrameHeader& header = outgoing.header;
-    header.flags = flagsOf(job, frame.stats.convergence);
+    header.flags |= flagsOf(job, frame.stats.convergence);
     header.inputSeq = job.shown.inputSeq;
     header.stateRev = job.shown.rev;
     header.clientUs = job.shown.clientUs;
     header.holdUs = static_cast<std::uint32_t>(job.startedUs - job.shown.changedUs);
     header.encodeUs = static_cast<std::uint32_t>(encoded.encodeMs * 1e3);
     header.payloadLen = static_cast<std::uint32_t>(encoded.buffer.size() - protocol::kFrameHeaderBytes);
-    outgoing.info = streamInfo(*job.shown.view, frame, encoding);
+    outgoing.info = streamInfo(*job.shown.view, frame, settings.encoding);
     outgoing.stats = frameStats(frame);
     outgoing.stats.encodeMs = encoded.encodeMs;
+    outgoing.stats.holdMs = 1e-3 * header.holdUs;
+    outgoing.stats.level = header.level;
+    outgoing.pictureMs = pictureMs(frame.stats, encoded.encodeMs);
+    outgoing.changedUs = job.shown.changedUs;
+    outgoing.encodedUs = session::nowUs();
     outgoing.resting = job.resting();
     outgoing.requestId = job.requestId;
     outgoing.mapHash = hashText(frame.mapHash);
@@ -69,7 +109,11 @@ struct RenderThread::Gpu {
 };
 
 RenderThread::RenderThread(const Config& config, std::function<void(Delivery&&)> deliver)
-    : config_(config), deliver_(std::move(deliver)), encoders_(kEncoderThreads) {
+    : config_(config),
+      deliver_(std::move(deliver)),
+      scheduler_(static_cast<std::uint32_t>(config.gpuMsPerS)),
+      testFrames_(config.testFrameBytes, config.testFrameMs),
+      encoders_(kEncoderThreads) {
     std::promise<void> warm;
     std::future<void> warmed = warm.get_future();
     thread_ = std::thread([this, &warm] { work(warm); });
@@ -120,6 +164,7 @@ void RenderThread::serve(Gpu& gpu) {
             draw(gpu, std::move(*job));
             lock.lock();
         } else if (std::exchange(collecting_, false)) {
+            std::erase_if(stills_, [this](const auto& still) { return !scheduler_.knows(still.first); });
             lock.unlock();
             gpu.pipeline.collect();
             lock.lock();
@@ -145,38 +190,55 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
     busySinceUs_ = job.startedUs;
     std::string error;
     render::Frame frame;
-    try {
-        render::Request request = job.shown.view->request;
-        // An answer names its map's hash; the map itself has no anti-aliasing to pay for.
-        request.still = job.still || (job.requestId && request.target == render::Target::Spectral);
-        request.converge = job.converge;
-        frame = gpu.pipeline.run(request);
+    const auto still = stills_.find(job.session);
+    if (testFrames_.wanted()) {
+        stream::Encoded encoded;
+        frame = testFrames_.draw(job, encoded);
         ++frames_;
-        renderMsTotal_ = renderMsTotal_ + frame.stats.renderMs;
-    } catch (const std::exception& problem) {
-        ++failures_;
-        error = problem.what();
-        log::error("render").with("message", error);
+        finish(job, frame);
+        session::OutgoingFrame outgoing = outgoingFrame(job, frame, job.shown.view->encode, std::move(encoded));
+        outgoing.header.flags |= protocol::kFrameTest;
+        deliver_({std::move(job), std::move(outgoing), {}});
+        return;
     }
-    busySinceUs_ = 0;
-    {
-        const std::lock_guard lock(mutex_);
-        scheduler_.drawn(job, frame.stats.convergence);
+    if (job.lossless && still != stills_.end() && still->second.view == job.shown.view) {
+        frame = std::move(still->second.frame);
+        stills_.erase(still);
+    } else {
+        try {
+            frame = gpu.pipeline.run(requestOf(job));
+            ++frames_;
+        } catch (const std::exception& problem) {
+            ++failures_;
+            error = problem.what();
+            log::error("render").with("message", error);
+        }
     }
+    finish(job, frame);
     if (!error.empty()) {
         deliver_({std::move(job), {}, std::move(error)});
         return;
     }
-    const View& view = *job.shown.view;
-    const stream::EncodeSettings settings = job.endsConvergence(frame.stats.convergence) ? view.encodeLast : view.encode;
-    encoders_.submit(std::move(frame), settings,
-                     [this, job = std::move(job), encoding = settings.encoding](render::Frame&& drawn, stream::Encoded&& encoded) {
-                         if (!encoded.error.empty()) {
-                             deliver_({job, {}, std::move(encoded.error)});
-                             return;
-                         }
-                         deliver_({job, outgoingFrame(job, drawn, encoding, std::move(encoded)), {}});
-                     });
+    if (job.still && !job.lossless && !job.converge && !job.requestId && job.shown.view->adaptive) {
+        stills_.insert_or_assign(job.session, Still{job.shown.view, frame});
+    }
+    const stream::EncodeSettings settings = encodingOf(job, frame.stats.convergence);
+    encoders_.submit(std::move(frame), settings, [this, job = std::move(job), settings](render::Frame&& drawn, stream::Encoded&& encoded) {
+        if (!encoded.error.empty()) {
+            deliver_({job, {}, std::move(encoded.error)});
+            return;
+        }
+        deliver_({job, outgoingFrame(job, drawn, settings, std::move(encoded)), {}});
+    });
+}
+
+// Drawn or failed: whose time it was, and what its session waits for next.
+void RenderThread::finish(const FrameJob& job, const render::Frame& frame) {
+    renderMsTotal_ = renderMsTotal_ + frame.stats.renderMs;
+    busySinceUs_ = 0;
+    const std::lock_guard lock(mutex_);
+    scheduler_.spent(job.session, session::nowUs() - job.startedUs);
+    scheduler_.drawn(job, frame.stats.convergence);
 }
 
 }  // namespace caustream

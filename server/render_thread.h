@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -14,6 +15,7 @@
 #include "scheduler.h"
 #include "session/outbox.h"
 #include "stream/encode_pool.h"
+#include "test_frames.h"
 
 namespace caustream {
 
@@ -57,6 +59,7 @@ class RenderThread {
     void serve(Gpu& gpu);
     void reloadShaders(Gpu& gpu);  // with mutex_ held
     void draw(Gpu& gpu, FrameJob job);
+    void finish(const FrameJob& job, const render::Frame& frame);
 
     Config config_;
     std::function<void(Delivery&&)> deliver_;
@@ -70,6 +73,14 @@ class RenderThread {
 
     std::atomic<std::uint64_t> busySinceUs_{0}, frames_{0}, failures_{0};
     std::atomic<double> renderMsTotal_{0.0};
+
+    // Render thread: the newest still of each session that gets it once more, without loss.
+    struct Still {
+        std::shared_ptr<const View> view;
+        render::Frame frame;
+    };
+    std::map<SessionKey, Still> stills_;
+    TestFrames testFrames_;
 
     stream::EncodePool encoders_;
     std::thread thread_;

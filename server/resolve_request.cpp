@@ -16,7 +16,6 @@ using protocol::ErrorCode;
 using protocol::Sample;
 using protocol::Target;
 
-constexpr int kJpegQuality = 90;  // 4:4:4; below it a dispersed caustic's thin colours wash out
 
 tl::unexpected<protocol::DecodeError> unsupported(std::string message, std::string field) {
     return tl::unexpected(
@@ -96,8 +95,9 @@ tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& 
     }
     View view;
     view.stream = stream;
-    view.encode = {.encoding = stream.encoding, .jpegQuality = stream.jpegQuality.value_or(kJpegQuality)};
+    view.encode = {.encoding = stream.encoding, .jpegQuality = stream.jpegQuality.value_or(stream::Ladder::at(stream::Ladder::kBest).jpegQuality)};
     view.encodeLast = view.encode;
+    view.adaptive = stream.encoding == Encoding::Jpeg && !stream.jpegQuality && stream.target != Target::Spectral;
     if (stream.encoding == Encoding::Jpeg && readsPng) {
         view.encodeLast.encoding = Encoding::Png;
     }
@@ -121,14 +121,20 @@ tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& 
     return view;
 }
 
+stream::Ladder::Size shownSize(const View& view, const render::Frame& frame) {
+    return view.stream.target == Target::Spectral ? stream::Ladder::Size{frame.width, frame.height}
+                                                  : stream::Ladder::Size{view.request.width, view.request.height};
+}
+
 protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, Encoding encoding) {
     protocol::StreamInfo info;
     info.target = view.stream.target;
     info.pass = view.stream.pass;
     info.encoding = encoding;
     info.sample = sampleOf(frame);
-    info.width = static_cast<std::uint32_t>(frame.width);
-    info.height = static_cast<std::uint32_t>(frame.height);
+    const stream::Ladder::Size size = shownSize(view, frame);
+    info.width = static_cast<std::uint32_t>(size.width);
+    info.height = static_cast<std::uint32_t>(size.height);
     info.bands = static_cast<std::uint32_t>(frame.bands);
     info.wavelengthsNm = frame.wavelengthsNm;
     std::copy_n(glm::value_ptr(frame.lightMatrix), info.lightMatrix.size(), info.lightMatrix.begin());
@@ -138,21 +144,26 @@ protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, En
     return info;
 }
 
-protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, Encoding encoding) {
+protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, const stream::EncodeSettings& encode, int level) {
     protocol::FrameHeader header;
     header.target = view.stream.target;
-    header.encoding = encoding;
+    header.encoding = encode.encoding;
+    header.level = static_cast<std::uint8_t>(level);
     header.sample = sampleOf(frame);
     header.width = static_cast<std::uint16_t>(frame.width);
     header.height = static_cast<std::uint16_t>(frame.height);
-    header.viewWidth = header.width;
-    header.viewHeight = header.height;
+    const stream::Ladder::Size size = shownSize(view, frame);
+    header.viewWidth = static_cast<std::uint16_t>(size.width);
+    header.viewHeight = static_cast<std::uint16_t>(size.height);
+    if (frame.width < size.width || frame.height < size.height) {
+        header.flags |= protocol::kFrameScaled;
+    }
     header.bands = static_cast<std::uint16_t>(frame.bands);
-    if (encoding == Encoding::Jpeg) {
-        header.jpegQuality = static_cast<std::uint8_t>(view.encode.jpegQuality);
+    if (encode.encoding == Encoding::Jpeg) {
+        header.jpegQuality = static_cast<std::uint8_t>(encode.jpegQuality);
     }
     header.renderUs = static_cast<std::uint32_t>(frame.stats.renderMs * 1e3);
-    header.rawLen = static_cast<std::uint32_t>(frame.pixels.size());
+    header.rawLen = static_cast<std::uint32_t>(static_cast<std::size_t>(frame.width) * frame.height * frame.bands * protocol::sampleBytes(header.sample));
     return header;
 }
 

@@ -6,6 +6,7 @@
 #include "protocol/messages.h"
 #include "render/frame.h"
 #include "stream/encoder.h"
+#include "stream/ladder.h"
 
 namespace caustream {
 
@@ -14,6 +15,7 @@ struct View {
     stream::EncodeSettings encode;
     stream::EncodeSettings encodeLast;  // of a picture that has converged: JPEG's losses would outlast the wait for it
     protocol::StreamState stream;
+    bool adaptive = false;              // moving frames follow the quality ladder
 };
 
 // `scene` already has the document's lights and materials; a client that reads PNG gets its last picture as one. Errors: a pass there is not, an encoding or samples
@@ -24,8 +26,11 @@ tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& 
 // What a frame of this view is, for `stream.info`; its epoch is the outbox's.
 protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, protocol::Encoding encoding);
 
+// The size that such a frame is shown at: a picture's is the view's, whatever the ladder made of it.
+stream::Ladder::Size shownSize(const View& view, const render::Frame& frame);
+
 // Header and statistics of a rendered frame: all but what only the outbox and the scheduler know.
-protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, protocol::Encoding encoding);
+protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, const stream::EncodeSettings& encode, int level);
 protocol::Stats frameStats(const render::Frame& frame);
 
 }  // namespace caustream

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace caustream {
 namespace {
@@ -12,6 +13,11 @@ void noteWake(std::uint64_t& wakeUs, std::uint64_t candidateUs) {
 
 // Anti-aliasing makes a picture better; the spectral map has none.
 bool wantsStill(const Shown& shown) { return shown.view && shown.view->request.target == render::Target::Composite; }
+
+// Whoever waits gets the picture without JPEG's losses, where its program reads such.
+bool wantsLossless(const Shown& shown) {
+    return wantsStill(shown) && shown.view->adaptive && shown.view->encodeLast.encoding != shown.view->encode.encoding;
+}
 
 // Between two frames at the most that are wanted a second.
 std::uint64_t frameUs(const Shown& shown) { return static_cast<std::uint64_t>(1e6 / shown.view->stream.maxFps); }
@@ -25,6 +31,7 @@ bool FrameJob::endsConvergence(const std::optional<render::Convergence>& reached
 // What was drawn before is no more.
 void Scheduler::startAnew(Entry& entry) {
     entry.stillDue = wantsStill(entry.shown);
+    entry.losslessDue = wantsLossless(entry.shown);
     entry.convergence = Convergence::None;
 }
 
@@ -58,13 +65,40 @@ void Scheduler::setOccupied(SessionKey session, std::uint32_t frames, std::uint3
     entry.quietSinceUs = nowUs;
 }
 
-bool Scheduler::request(SessionKey session, std::uint32_t requestId, bool still, bool converge) {
+tl::expected<void, Scheduler::Busy> Scheduler::request(SessionKey session, std::uint32_t requestId, bool still, bool converge,
+                                                       std::uint64_t nowUs) {
     Entry& entry = entries_.at(session);
+    std::uint64_t affordedUs = 0;
+    if (!affords(entry, nowUs, affordedUs)) {
+        return tl::unexpected(Busy{static_cast<std::uint32_t>((affordedUs - nowUs) / 1000 + 1)});
+    }
     if (entry.requests.size() >= kMaxRequests) {
-        return false;
+        return tl::unexpected(Busy{});
     }
     entry.requests.push_back({entry.shown, requestId, still, converge});
-    return true;
+    return {};
+}
+
+void Scheduler::spent(SessionKey session, std::uint64_t us) {
+    if (const auto entry = entries_.find(session); entry != entries_.end()) {
+        entry->second.servedUs += us;
+        entry->second.leftUs -= static_cast<double>(us);
+    }
+}
+
+// False while the session's share of the second is used up; `wakeUs` learns when it is not.
+bool Scheduler::affords(Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) const {
+    if (gpuMsPerS_ == 0) {
+        return true;
+    }
+    const double perUs = 1e-3 * gpuMsPerS_, most = 1e3 * gpuMsPerS_;
+    const double earned = entry.leftAtUs == 0 ? most : perUs * static_cast<double>(nowUs - entry.leftAtUs);
+    entry.leftUs = std::min(most, entry.leftUs + earned);
+    entry.leftAtUs = nowUs;
+    if (entry.leftUs <= 0.0) {
+        noteWake(wakeUs, nowUs + 1 + static_cast<std::uint64_t>(-entry.leftUs / perUs));
+    }
+    return entry.leftUs > 0.0;
 }
 
 void Scheduler::drawn(const FrameJob& job, const std::optional<render::Convergence>& reached) {
@@ -77,6 +111,7 @@ void Scheduler::drawn(const FrameJob& job, const std::optional<render::Convergen
                         : job.endsConvergence(reached) ? Convergence::Shown
                                                     : Convergence::Reached;
     entry.stillDue = entry.stillDue && !reached;
+    entry.losslessDue = entry.losslessDue && !reached;
 }
 
 void Scheduler::finished(const FrameJob& job) {
@@ -101,23 +136,37 @@ void Scheduler::redrawAll() {
 std::optional<FrameJob> Scheduler::next(std::uint64_t nowUs, std::uint64_t& wakeUs) {
     wakeUs = 0;
     constexpr std::array<Take, 3> kByUrgency = {&Scheduler::takeMoving, &Scheduler::takeStill, &Scheduler::takeConverging};
-    for (std::size_t i = 0; i < kByUrgency.size(); ++i) {
-        if (auto job = takeTurn(kByUrgency[i], last_[i], nowUs, wakeUs)) {
-            return job;
+    for (const bool starvedOnly : {true, false}) {
+        for (const Take take : kByUrgency) {
+            if (auto job = takeTurn(take, starvedOnly, nowUs, wakeUs)) {
+                return job;
+            }
         }
     }
     return std::nullopt;
 }
 
-std::optional<FrameJob> Scheduler::takeTurn(Take take, SessionKey& last, std::uint64_t nowUs, std::uint64_t& wakeUs) {
-    // From the one after the last served, around.
-    auto at = entries_.upper_bound(last);
-    for (std::size_t i = 0; i < entries_.size(); ++i, ++at) {
-        if (at == entries_.end()) {
-            at = entries_.begin();
+// On the common scale: whoever had nothing to draw for long has no claim to all that the others got meanwhile.
+std::uint64_t Scheduler::startOf(const Entry& entry) const {
+    return std::max(entry.servedUs, clock_ - std::min(clock_, kCreditUs));
+}
+
+std::optional<FrameJob> Scheduler::takeTurn(Take take, bool starvedOnly, std::uint64_t nowUs, std::uint64_t& wakeUs) {
+    std::vector<std::pair<std::uint64_t, SessionKey>> order;
+    for (const auto& [session, entry] : entries_) {
+        if (!starvedOnly || clock_ > entry.servedUs + kStarvedUs) {
+            order.emplace_back(startOf(entry), session);
         }
-        if (auto job = (this->*take)(at->first, at->second, nowUs, wakeUs)) {
-            last = at->first;
+    }
+    std::ranges::sort(order);
+    for (const auto& [startUs, session] : order) {
+        Entry& entry = entries_.at(session);
+        if (!affords(entry, nowUs, wakeUs)) {
+            continue;
+        }
+        if (auto job = (this->*take)(session, entry, nowUs, wakeUs)) {
+            clock_ = std::max(clock_, startUs);
+            entry.servedUs = startUs + 1;  // equals take turns even where nothing is measured
             return job;
         }
     }
@@ -153,20 +202,25 @@ std::optional<FrameJob> Scheduler::takeMoving(SessionKey session, Entry& entry, 
     }
     entry.drawnVersion = entry.version;
     entry.notBeforeUs = nowUs + frameUs(entry.shown);
-    return jobOf(session, entry, false, false, nowUs);
+    FrameJob job = jobOf(session, entry, false, false, nowUs);
+    job.level = entry.shown.view->adaptive ? entry.level : stream::Ladder::kFixed;
+    return job;
 }
 
 std::optional<FrameJob> Scheduler::takeStill(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {
-    if (!rests(entry) || !entry.stillDue) {
+    if (!rests(entry) || !(entry.stillDue || entry.losslessDue)) {
         return std::nullopt;
     }
-    const std::uint64_t dueUs = entry.quietSinceUs + kStillAfterUs;
+    const bool lossless = !entry.stillDue;
+    const std::uint64_t dueUs = std::max(entry.quietSinceUs + kStillAfterUs, lossless ? entry.shown.changedUs + kLosslessAfterUs : 0);
     if (nowUs < dueUs) {
         noteWake(wakeUs, dueUs);
         return std::nullopt;
     }
-    entry.stillDue = false;
-    return jobOf(session, entry, true, false, nowUs);
+    (lossless ? entry.losslessDue : entry.stillDue) = false;
+    FrameJob job = jobOf(session, entry, true, false, nowUs);
+    job.lossless = lossless;
+    return job;
 }
 
 std::optional<FrameJob> Scheduler::takeConverging(SessionKey session, Entry& entry, std::uint64_t nowUs, std::uint64_t& wakeUs) {

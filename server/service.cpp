@@ -27,6 +27,8 @@ net::ServerOptions serverOptions(const Config& config, const protocol::Limits& l
 protocol::Limits limitsOf(const Config& config) {
     protocol::Limits limits;
     limits.sessions = static_cast<std::uint32_t>(config.maxSessions);
+    limits.gpuMsPerS = static_cast<std::uint32_t>(config.gpuMsPerS);
+    limits.viewerBytes = config.viewerBytes;
     return limits;
 }
 

@@ -200,14 +200,18 @@ void Viewer::setStreaming(std::uint32_t id, bool streaming) {
 }
 
 void Viewer::on(const protocol::FrameRequest& request) {
-    const bool taken = requestsPending_ + outbox_.answersWaiting() < Scheduler::kMaxRequests && desk_.renderer->schedule([&](Scheduler& scheduler) {
-        return scheduler.request(connection_.id(), request.id, request.still, request.converge);
+    const bool room = requestsPending_ + outbox_.answersWaiting() < Scheduler::kMaxRequests;
+    const auto taken = !room ? tl::unexpected(Scheduler::Busy{}) : desk_.renderer->schedule([&](Scheduler& scheduler) {
+        return scheduler.request(connection_.id(), request.id, request.still, request.converge, session::nowUs());
     });
-    if (!taken) {
+    if (taken) {
+        ++requestsPending_;
+    } else if (taken.error().retryMs > 0) {
+        refuse(problem(ErrorCode::Busy, "this viewer's " + std::to_string(desk_.limits.gpuMsPerS) + " ms of GPU time a second are used up", {}, request.id),
+               taken.error().retryMs);
+    } else {
         refuse(problem(ErrorCode::Busy, std::to_string(Scheduler::kMaxRequests) + " frames are asked for already", {}, request.id));
-        return;
     }
-    ++requestsPending_;
 }
 
 void Viewer::on(const protocol::Ack& ack) {
@@ -238,9 +242,13 @@ void Viewer::updateOccupied() {
     if (!ready_) {
         return;
     }
-    desk_.renderer->schedule([this](Scheduler& scheduler) {
-        scheduler.setOccupied(connection_.id(), outbox_.occupied(), outbox_.window(), session::nowUs());
-    });
+    desk_.renderer->schedule([this](Scheduler& scheduler) { tell(scheduler); });
+}
+
+// How much room there is, and what the link carries.
+void Viewer::tell(Scheduler& scheduler) const {
+    scheduler.setOccupied(connection_.id(), outbox_.occupied(), outbox_.window(), session::nowUs());
+    scheduler.setLevel(connection_.id(), outbox_.level());
 }
 
 void Viewer::deliver(Delivery&& delivery) {
@@ -255,13 +263,15 @@ void Viewer::deliver(Delivery&& delivery) {
         outbox_.requested(std::move(delivery.frame));
     } else {
         stale = job.resting() && desk_.renderer->schedule([&](Scheduler& scheduler) { return scheduler.outdated(job); });
-        if (!stale) {
+        if (stale) {
+            outbox_.countOutdated();
+        } else {
             outbox_.streamed(job.order, std::move(delivery.frame));
         }
     }
     desk_.renderer->schedule([&](Scheduler& scheduler) {
         scheduler.finished(job);
-        scheduler.setOccupied(connection_.id(), outbox_.occupied(), outbox_.window(), session::nowUs());
+        tell(scheduler);
     });
     connection_.requestWrite();
 }
@@ -310,9 +320,11 @@ void Viewer::ok(std::uint32_t id) {
     send(message);
 }
 
-void Viewer::refuse(const DecodeError& error) {
+void Viewer::refuse(const DecodeError& error, std::optional<std::uint32_t> retryMs) {
     ++desk_.refusedMessages;
-    send(protocol::errorMessage(error));
+    protocol::ErrorMessage message = protocol::errorMessage(error);
+    message.retryMs = retryMs;
+    send(message);
 }
 
 void Viewer::fail(const DecodeError& error) {

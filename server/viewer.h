@@ -96,11 +96,12 @@ class Viewer {
         connection_.requestWrite();
     }
     void ok(std::uint32_t id);
-    void refuse(const protocol::DecodeError& error);
+    void refuse(const protocol::DecodeError& error, std::optional<std::uint32_t> retryMs = {});
     void fail(const protocol::DecodeError& error);  // and close
     void sendState();
     void setStreaming(std::uint32_t id, bool streaming);
     void updateOccupied();
+    void tell(Scheduler& scheduler) const;
     void sendStats(std::uint64_t nowUs);
 
     Desk& desk_;

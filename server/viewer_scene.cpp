@@ -138,7 +138,7 @@ std::optional<DecodeError> Viewer::finish(protocol::Applied applied, std::shared
         if (!std::exchange(ready_, true)) {
             scheduler.add(connection_.id());
         }
-        scheduler.setOccupied(connection_.id(), outbox_.occupied(), outbox_.window(), session::nowUs());
+        tell(scheduler);
         scheduler.show(connection_.id(), std::move(shown));
     });
     if (otherScene) {

@@ -19,7 +19,7 @@ bool sameEpoch(protocol::StreamInfo a, const protocol::StreamInfo& b) {
 
 void Outbox::discardResting() {
     if (const auto& waiting = mailbox_.peek(); waiting && waiting->resting) {
-        mailbox_.clear();
+        outdated_ += mailbox_.clear();
     }
 }
 
@@ -27,16 +27,23 @@ bool Outbox::acknowledge(const protocol::Ack& ack, std::uint64_t nowUs) {
     if (ack.seq > sent_) {
         return false;
     }
+    std::optional<Sent> newest;
+    std::size_t bytes = 0;
     while (!waiting_.empty() && waiting_.front().seq <= ack.seq) {
-        rttMs_ = static_cast<double>(nowUs - waiting_.front().atUs) * 1e-3;
+        newest = waiting_.front();
+        bytes += newest->frame.bytes;
         waiting_.pop_front();
+    }
+    if (newest) {
+        rate_.acknowledged(newest->frame, bytes, nowUs);
+        ageMs_ = newest->changedUs ? static_cast<double>(nowUs - newest->changedUs) * 1e-3 : ageMs_;
     }
     return true;
 }
 
 // Frames at rest leave the window's last place to what moves next, unless it is the only one.
 bool Outbox::mayLeave(const OutgoingFrame& frame) const {
-    return unacknowledged() < (frame.resting && window_ > 1 ? window_ - 1 : window_);
+    return unacknowledged() < (frame.resting && window() > 1 ? window() - 1 : window());
 }
 
 void Outbox::stage(OutgoingFrame frame) {
@@ -79,8 +86,11 @@ std::optional<Outgoing> Outbox::next(std::uint64_t nowUs) {
     frame.header.serverUs = nowUs;
     std::ranges::copy(protocol::encodeHeader(frame.header), frame.buffer.data());
     if (!frame.requestId) {
-        waiting_.push_back({frame.header.frameSeq, nowUs});
+        const int level = frame.resting ? stream::Ladder::kFixed : frame.header.level;
+        waiting_.push_back({frame.header.frameSeq, frame.resting ? 0 : frame.changedUs,
+                            rate_.sent(nowUs, frame.buffer.size(), level, frame.pictureMs, unacknowledged())});
     }
+    frame.stats.sendMs = static_cast<double>(nowUs - std::min(nowUs, frame.encodedUs)) * 1e-3;
     sentBytes_ += frame.buffer.size();
     frame.stats.frameSeq = frame.header.frameSeq;
     stats_ = std::move(frame.stats);
@@ -89,7 +99,7 @@ std::optional<Outgoing> Outbox::next(std::uint64_t nowUs) {
 }
 
 std::optional<std::uint64_t> Outbox::waitingSinceUs() const {
-    return waiting_.empty() ? std::nullopt : std::optional(waiting_.front().atUs);
+    return waiting_.empty() ? std::nullopt : std::optional(waiting_.front().frame.atUs);
 }
 
 std::size_t Outbox::textBytes() const {
@@ -103,9 +113,12 @@ std::optional<protocol::Stats> Outbox::takeStats() {
 }
 
 protocol::Stats Outbox::withConnection(protocol::Stats stats) const {
-    stats.window = window_;
-    stats.dropped = static_cast<std::uint32_t>(mailbox_.dropped());
-    stats.rttMs = rttMs_;
+    stats.window = window();
+    stats.drops = drops();
+    stats.dropped = dropped();
+    stats.rttMs = rate_.rttMs();
+    stats.baseRttMs = rate_.baseRttMs();
+    stats.ageMs = ageMs_;
     return stats;
 }
 

@@ -13,29 +13,30 @@ class FrameMailbox {
     // False when something newer was already taken or waits; `order` rises with every frame rendered.
     bool put(std::uint64_t order, T value) {
         if (order <= newest_) {
-            ++dropped_;
+            ++replaced_;
             return false;
         }
         newest_ = order;
-        dropped_ += slot_.has_value();
+        replaced_ += slot_.has_value();
         slot_ = std::move(value);
         return true;
     }
 
     std::optional<T> take() { return std::exchange(slot_, std::nullopt); }
 
-    // Discards what waits, for instance a still picture that new input has made stale.
-    void clear() {
-        dropped_ += slot_.has_value();
+    // Discards what waits. False when nothing did.
+    bool clear() {
+        const bool had = slot_.has_value();
         slot_.reset();
+        return had;
     }
 
     const std::optional<T>& peek() const { return slot_; }
-    std::uint64_t dropped() const { return dropped_; }
+    std::uint64_t replaced() const { return replaced_; }  // values that a newer one took the place of
 
    private:
     std::optional<T> slot_;
-    std::uint64_t newest_ = 0, dropped_ = 0;
+    std::uint64_t newest_ = 0, replaced_ = 0;
 };
 
 }  // namespace caustream::stream

@@ -224,7 +224,7 @@ TEST_F(ConvergenceTest, WhatMovesGoesFirstThenStillsAndThoseAtRestTakeTurns) {
 
 TEST_F(ConvergenceTest, AnAnswerToARequestSaysNothingOfTheStream) {
     first(1, 1000);
-    ASSERT_TRUE(scheduler_.request(1, 7, true, true));
+    ASSERT_TRUE(scheduler_.request(1, 7, true, true, 1000));
     const auto answer = next(2000);
     ASSERT_TRUE(answer && answer->requestId && answer->converge);
     EXPECT_FALSE(answer->resting());

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "net/http.h"
 #include "scheduler.h"
 #include "session/outbox.h"
@@ -109,7 +111,7 @@ TEST_F(SchedulerTest, KeepsToTheFrameRate) {
 TEST_F(SchedulerTest, ARequestNeedsNoStreamAndShowsItsOwnMoment) {
     scheduler_.add(1);
     scheduler_.show(1, view(1000, 5));
-    EXPECT_TRUE(scheduler_.request(1, 9, true));
+    EXPECT_TRUE(scheduler_.request(1, 9, true, false, 1000));
     scheduler_.show(1, view(2000, 6));
     const auto job = next(3000);
     ASSERT_TRUE(job);
@@ -118,9 +120,134 @@ TEST_F(SchedulerTest, ARequestNeedsNoStreamAndShowsItsOwnMoment) {
     EXPECT_TRUE(job->still);
     EXPECT_FALSE(next(3000));
     for (std::size_t i = 0; i < Scheduler::kMaxRequests; ++i) {
-        EXPECT_TRUE(scheduler_.request(1, 1, false));
+        EXPECT_TRUE(scheduler_.request(1, 1, false, false, 3000));
     }
-    EXPECT_FALSE(scheduler_.request(1, 1, false)) << "patience has an end";
+    EXPECT_FALSE(scheduler_.request(1, 1, false, false, 3000)) << "patience has an end";
+}
+
+TEST_F(SchedulerTest, TheGpuIsSharedByTimeNotByFrames) {
+    streaming(1, 1000);
+    streaming(2, 1000);
+    std::map<SessionKey, double> usedMs;
+    for (std::uint64_t now = 100'000; now < 20'000'000; now += 10'000) {
+        for (SessionKey key : {1, 2}) {
+            scheduler_.show(key, view(now));
+        }
+        if (const auto job = next(now)) {
+            const std::uint64_t tookUs = job->session == 1 ? 90'000 : 10'000;
+            scheduler_.spent(job->session, tookUs);
+            scheduler_.finished(*job);
+            usedMs[job->session] += 1e-3 * static_cast<double>(tookUs);
+        }
+    }
+    EXPECT_NEAR(usedMs[1] / usedMs[2], 1.0, 0.1) << "one dear frame for nine cheap ones";
+}
+
+TEST_F(SchedulerTest, WhoeverWasAwayCatchesUpALittleAtMost) {
+    streaming(1, 1000);
+    streaming(2, 1000);
+    scheduler_.finished(*next(1000));
+    scheduler_.finished(*next(1000));
+    for (std::uint64_t now = 100'000; now < 10'000'000; now += 50'000) {  // alone
+        scheduler_.show(1, view(now));
+        const auto job = next(now);
+        ASSERT_TRUE(job);
+        scheduler_.spent(job->session, 50'000);
+        scheduler_.finished(*job);
+    }
+    int ofTheOther = 0;
+    for (std::uint64_t now = 20'000'000; now < 21'000'000; now += 50'000) {
+        for (SessionKey key : {1, 2}) {
+            scheduler_.show(key, view(now));
+        }
+        const auto job = next(now);
+        ASSERT_TRUE(job);
+        ofTheOther += job->session == 2;
+        scheduler_.spent(job->session, 50'000);
+        scheduler_.finished(*job);
+    }
+    EXPECT_LE(ofTheOther, 13) << "half of twenty, and its credit";
+    EXPECT_GE(ofTheOther, 10);
+}
+
+TEST_F(SchedulerTest, WhatMovesDoesNotStarveWhatRests) {
+    streaming(1, 1000);
+    streaming(2, 1000);
+    scheduler_.finished(*next(1000));
+    scheduler_.finished(*next(1000));
+    scheduler_.setOccupied(2, 0, 2, 2000);
+    bool still = false;
+    for (std::uint64_t now = 100'000; now < 3'000'000 && !still; now += 50'000) {
+        scheduler_.show(1, view(now));
+        const auto job = next(now);
+        ASSERT_TRUE(job);
+        still = job->session == 2 && job->still;
+        scheduler_.spent(job->session, 50'000);
+        scheduler_.finished(*job);
+    }
+    EXPECT_TRUE(still);
+}
+
+TEST(SchedulerLimit, ASessionGetsNoMoreThanItsShareOfTheSecond) {
+    Scheduler scheduler(200);
+    std::uint64_t wakeUs = 0;
+    scheduler.add(1);
+    scheduler.show(1, view(1000));
+    scheduler.setStreaming(1, true);
+    scheduler.setOccupied(1, 0, 2, 1000);
+    double usedMs = 0;
+    for (std::uint64_t now = 1000; now < 10'001'000; now += 10'000) {
+        scheduler.show(1, view(now));
+        if (const auto job = scheduler.next(now, wakeUs)) {
+            scheduler.spent(1, 50'000);
+            scheduler.finished(*job);
+            usedMs += 50;
+        } else if (wakeUs > now + 10'000) {
+            const auto refused = scheduler.request(1, 1, false, false, now);
+            ASSERT_FALSE(refused);
+            EXPECT_GT(refused.error().retryMs, 0u);
+        }
+    }
+    EXPECT_NEAR(usedMs, 10 * 200 + 200, 100) << "and the first second's, at once";
+}
+
+TEST_F(SchedulerTest, APictureAtRestComesOnceMoreWithoutLoss) {
+    const auto shown = [](std::uint64_t nowUs) {
+        Shown plain = view(nowUs);
+        auto adaptive = std::make_shared<View>(*plain.view);
+        adaptive->adaptive = true;
+        adaptive->encodeLast.encoding = protocol::Encoding::Png;
+        plain.view = adaptive;
+        return plain;
+    };
+    scheduler_.add(1);
+    scheduler_.show(1, shown(1000));
+    scheduler_.setStreaming(1, true);
+    scheduler_.setOccupied(1, 0, 2, 1000);
+    scheduler_.setLevel(1, 4);
+    const auto moving = next(1000);
+    ASSERT_TRUE(moving);
+    EXPECT_EQ(moving->level, 4);
+    scheduler_.finished(*moving);
+    const auto still = next(1000 + kStill);
+    ASSERT_TRUE(still);
+    EXPECT_TRUE(still->still && !still->lossless);
+    EXPECT_EQ(still->level, stream::Ladder::kFixed) << "as large as the view";
+    scheduler_.finished(*still);
+    EXPECT_FALSE(next(1000 + Scheduler::kLosslessAfterUs - 1));
+    EXPECT_EQ(wakeUs_, 1000 + Scheduler::kLosslessAfterUs);
+    const auto lossless = next(1000 + Scheduler::kLosslessAfterUs);
+    ASSERT_TRUE(lossless);
+    EXPECT_TRUE(lossless->still && lossless->lossless);
+    scheduler_.finished(*lossless);
+    EXPECT_FALSE(next(100 * Scheduler::kLosslessAfterUs)) << "once each";
+
+    scheduler_.show(1, shown(200'000'000));
+    scheduler_.finished(*next(200'000'000));
+    scheduler_.show(1, shown(200'000'000 + Scheduler::kLosslessAfterUs / 2));
+    const auto after = next(200'000'000 + Scheduler::kLosslessAfterUs);
+    ASSERT_TRUE(after);
+    EXPECT_FALSE(after->still) << "input puts both off";
 }
 
 OutgoingFrame frame(std::uint32_t rev, std::uint32_t flags = 0) {
