@@ -17,6 +17,7 @@ ServerMessage decodeWelcome(Fields& in) {
     Welcome welcome;
     welcome.id = requestId(in);
     welcome.session = in.at("session").text(kNameBytes, 1);
+    if (const auto v = in.find("view_id")) welcome.viewId = v->text(kNameBytes);
     welcome.server = in.at("server").text(kNameBytes, 1);
     welcome.protocol = in.at("protocol").text(kNameBytes, 1);
     welcome.build = in.at("build").text(kTextBytes);
@@ -214,6 +215,7 @@ std::string encode(const Welcome& welcome) {
     return text({{"op", "welcome"},
                  {"id", welcome.id},
                  {"session", welcome.session},
+                 {"view_id", welcome.viewId},
                  {"server", welcome.server},
                  {"protocol", welcome.protocol},
                  {"build", welcome.build},

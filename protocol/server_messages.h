@@ -23,6 +23,7 @@ struct GlassPreset {
 struct Welcome {
     std::uint32_t id = 0;  // of the hello
     std::string session;
+    std::string viewId;  // what others name in hello.follow; empty: this server lets no one follow
     std::string server;  // this server's id, for ?srv=
     std::string protocol = "caustream.v1";
     std::string build;

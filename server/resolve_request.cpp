@@ -121,6 +121,22 @@ tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& 
     return view;
 }
 
+std::size_t estimatedBytes(const View& view) {
+    // Geometry lies in memory, on the GPU and in two trees; a map in fixed point, in floats and around itself; a picture in
+    // half and full floats, at four times its size for a still, and in what is read back.
+    constexpr std::size_t kPerMapTexel = 48, kPerPixel = 104, kPerPhoton = 64, kPerBandTexel = 8;
+    const scene::Geometry& geometry = *view.request.scene->geometry;
+    std::size_t bytes = 5 * (geometry.vertices.size() * sizeof(scene::Vertex) + geometry.indices.size() * sizeof(std::uint32_t));
+    for (const scene::Texture& texture : geometry.textures) {
+        bytes += 3 * texture.rgba.size();
+    }
+    const render::Transport& transport = view.request.transport;
+    const auto square = [](int side) { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); };
+    const std::size_t bands = view.request.wavelengthBands ? std::max<std::size_t>(transport.wavelengthsNm.size(), transport.wavelengths) : 0;
+    bytes += square(transport.mapSize) * (kPerMapTexel + bands * kPerBandTexel) + square(transport.photonGrid) * kPerPhoton;
+    return bytes + static_cast<std::size_t>(view.request.width) * static_cast<std::size_t>(view.request.height) * kPerPixel;
+}
+
 stream::Ladder::Size shownSize(const View& view, const render::Frame& frame) {
     return view.stream.target == Target::Spectral ? stream::Ladder::Size{frame.width, frame.height}
                                                   : stream::Ladder::Size{view.request.width, view.request.height};

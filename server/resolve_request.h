@@ -23,6 +23,10 @@ struct View {
 tl::expected<View, protocol::DecodeError> resolveRequest(const protocol::State& state,
                                                          std::shared_ptr<const scene::Scene> scene, bool readsPng = true);
 
+// About what the server holds for such a viewer, on both sides of the bus: its scene, which others may share, its maps and
+// its pictures.
+std::size_t estimatedBytes(const View& view);
+
 // What a frame of this view is, for `stream.info`; its epoch is the outbox's.
 protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, protocol::Encoding encoding);
 

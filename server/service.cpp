@@ -48,6 +48,20 @@ Service::Service(const Config& config)
     desk_.renderer = renderer_.get();
     desk_.loader = &loader_;
     desk_.post = [this](std::function<void()> task) { server_.post(std::move(task)); };
+    desk_.findSession = [this](std::string_view id) -> Viewer* {
+        for (const auto& [key, viewer] : viewers_) {
+            const session::Session* session = viewer->session();
+            if (session && (session->id() == id || session::viewIdOf(session->id()) == id)) {
+                return viewer.get();
+            }
+        }
+        return nullptr;
+    };
+    desk_.eachViewer = [this](const std::function<void(Viewer&)>& visit) {
+        for (const auto& [key, viewer] : viewers_) {
+            visit(*viewer);
+        }
+    };
     desk_.find = [this](SessionKey key) {
         const auto viewer = viewers_.find(key);
         return viewer == viewers_.end() ? nullptr : viewer->second.get();
@@ -87,6 +101,7 @@ void Service::closed(net::Connection& connection) {
     sentBytes_ += outbox.sentBytes();
     dropped_ += outbox.dropped();
     log::info("closed").with("connection", connection.id()).with("frames", outbox.sent()).with("dropped", outbox.dropped());
+    viewer->second->end();
     viewers_.erase(viewer);
     if (desk_.draining && viewers_.empty()) {
         server_.stop();
@@ -98,6 +113,7 @@ void Service::tick() {
     for (const auto& [key, viewer] : viewers_) {
         viewer->tick(now);
     }
+    desk_.kept.sweep(now);
     if (desk_.draining && now - drainSinceUs_ > kDrainUs) {
         server_.stop();
     }

@@ -1,7 +1,5 @@
 #include "viewer.h"
 
-#include <openssl/crypto.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -32,11 +30,6 @@ DecodeError problem(ErrorCode code, std::string message, std::string field = {},
     return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
 }
 
-// Takes as long for a wrong token as for a right one.
-bool sameToken(const std::string& a, const std::string& b) {
-    return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
-}
-
 }  // namespace
 
 Viewer::Viewer(Desk& desk, net::Connection& connection)
@@ -44,7 +37,8 @@ Viewer::Viewer(Desk& desk, net::Connection& connection)
       connection_(connection),
       texts_(desk.limits.messagesPerS),
       chunks_(kChunksPerS),
-      openedUs_(session::nowUs()) {}
+      openedUs_(session::nowUs()),
+      heardUs_(openedUs_) {}
 
 Viewer::~Viewer() {
     if (session_) {
@@ -79,92 +73,30 @@ void Viewer::handle(std::string_view message, bool binary) {
     } else if (!ready_ && !std::holds_alternative<protocol::Hello>(*decoded)) {
         refuse(problem(ErrorCode::BadRequest, "the first message is hello", "op"));
     } else {
+        if (!std::holds_alternative<protocol::Ack>(*decoded) && !std::holds_alternative<protocol::Ping>(*decoded)) {
+            rest(heardUs_ = session::nowUs());
+        }
         std::visit([this](const auto& known) { on(known); }, *decoded);
     }
 }
 
-bool Viewer::admit(const protocol::Hello& hello) {
-    const auto refuseWith = [&](DecodeError error, bool fatal) {
-        error.id = hello.id;
-        fatal ? fail(error) : refuse(error);
-        return false;
-    };
-    if (ready_) {
-        return refuseWith(problem(ErrorCode::BadRequest, "hello was said before", "op"), false);
+// A stream that no one has spoken to for long rests, until someone does; a connection that stays silent ends.
+void Viewer::rest(std::uint64_t nowUs) {
+    const std::uint64_t silentUs = nowUs - heardUs_;
+    if (const bool idle = silentUs > desk_.limits.idlePauseS * kUsPerS; ready_ && idle != idle_) {
+        idle_ = idle;
+        send(protocol::Status{protocol::Status::Level::Info, "idle", idle ? "nothing was said for long: the stream rests until something is" : ""});
+        desk_.renderer->schedule([&](Scheduler& scheduler) { scheduler.setStreaming(connection_.id(), streaming_ && !idle); });
     }
-    if (!desk_.config.token.empty() && !sameToken(hello.token.value_or(""), desk_.config.token)) {
-        return refuseWith(problem(ErrorCode::AuthRequired, "this server asks for its token", "token"), true);
+    if (silentUs > desk_.limits.idleCloseS * kUsPerS) {
+        fail(problem(ErrorCode::Timeout, "nothing was said for " + std::to_string(desk_.limits.idleCloseS) + " s"));
     }
-    if (hello.role == protocol::Role::View || hello.follow) {
-        return refuseWith(problem(ErrorCode::Unsupported, "every viewer has a session of its own",
-                                  hello.follow ? "follow" : "role"), false);
-    }
-    if (desk_.sessions >= desk_.limits.sessions) {
-        return refuseWith(problem(ErrorCode::Busy, "all " + std::to_string(desk_.limits.sessions) + " sessions are taken"), true);
-    }
-    return true;
-}
-
-void Viewer::on(const protocol::Hello& hello) {
-    if (!admit(hello)) {
-        return;
-    }
-    session_.emplace(session::randomId(), desk_.limits, hello.strict);
-    ++desk_.sessions;
-    outbox_.setMaxInflight(hello.maxInflight);
-    readsPng_ = std::ranges::find(hello.caps, "png") != hello.caps.end();
-    const auto withdraw = [this, id = hello.id](DecodeError error) {
-        session_.reset();
-        --desk_.sessions;
-        error.id = id;
-        refuse(error);
-    };
-
-    // A client that comes back brings its document; a scene it had uploaded may have to be uploaded again.
-    protocol::Json patch = hello.resume && hello.resume->state ? *hello.resume->state : protocol::Json::object();
-    std::vector<std::string> missing;
-    const auto applied = session_->apply(patch);
-    if (!applied) {
-        withdraw(applied.error());
-        return;
-    }
-    const protocol::SceneRef& scene = applied->state.scene;
-    if (scene.kind == protocol::SceneRef::Kind::Asset && !desk_.scenes.find(scene)) {
-        missing.push_back(scene.name);
-        for (const char* ofThatScene : {"scene", "lights", "materials", "camera"}) {
-            patch.erase(ofThatScene);
-        }
-    }
-    change({.patch = std::move(patch), .done = [this, withdraw, id = hello.id, missing](const auto& error) {
-                if (error) {
-                    withdraw(*error);
-                } else {
-                    welcome(id, missing);
-                }
-            }});
-    log::info("hello").with("connection", connection_.id()).with("client", hello.clientName).with("version", hello.clientVersion);
-}
-
-void Viewer::welcome(std::uint32_t id, std::vector<std::string> missingAssets) {
-    protocol::Welcome message{.id = id, .session = session_->id(), .server = desk_.serverId, .build = CAUSTREAM_VERSION};
-    message.gpu = desk_.renderer->gpuName();
-    message.rev = session_->rev();
-    message.state = session_->document();
-    message.caps = {"jpeg", "png", "raw", "f16", "f32"};
-    for (const scene::BuiltinScene& builtin : scene::builtinScenes()) {
-        message.scenes.emplace_back(builtin.name);
-    }
-    message.passes.assign(render::passNames().begin(), render::passNames().end());
-    message.limits = desk_.limits;
-    for (const optics::GlassPreset& glass : optics::kGlassPresets) {
-        message.glasses.push_back({glass.name, session::onTheWire(glass.dispersion)});
-    }
-    message.missingAssets = std::move(missingAssets);
-    message.heartbeatS = desk_.limits.pingS;
-    send(message);
 }
 
 void Viewer::on(const protocol::Update& update) {
+    if (!mayPatch(update.patch, update.id)) {
+        return;
+    }
     change({.patch = update.patch, .done = [this, id = update.id](const std::optional<DecodeError>& error) {
                 if (error) {
                     DecodeError reply = *error;
@@ -177,6 +109,9 @@ void Viewer::on(const protocol::Update& update) {
 }
 
 void Viewer::on(const protocol::Input& input) {
+    if (!mayPatch(input.patch, {})) {
+        return;
+    }
     change({.patch = input.patch, .input = input, .done = [this](const std::optional<DecodeError>& error) {
                 if (error) {
                     refuse(*error);
@@ -252,6 +187,9 @@ void Viewer::tell(Scheduler& scheduler) const {
 }
 
 void Viewer::deliver(Delivery&& delivery) {
+    if (!ready_) {
+        return;  // its session has gone to another connection
+    }
     const FrameJob& job = delivery.job;
     bool stale = false;
     if (job.requestId) {
@@ -293,6 +231,10 @@ void Viewer::tick(std::uint64_t nowUs) {
         fail(problem(ErrorCode::RateLimited, "replies are not read"));
         return;
     }
+    if (std::exchange(toldLate_, false)) {
+        sendState();
+    }
+    rest(nowUs);
     sendStats(nowUs);
 }
 

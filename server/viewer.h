@@ -18,6 +18,7 @@
 #include "session/outbox.h"
 #include "session/scene_store.h"
 #include "session/session.h"
+#include "session/session_registry.h"
 #include "session/token_bucket.h"
 
 namespace caustream {
@@ -34,6 +35,9 @@ struct Desk {
     session::LoadThread* loader = nullptr;
     std::function<void(std::function<void()>)> post;        // onto the network thread
     std::function<Viewer*(SessionKey)> find;                // nothing once it has gone
+    std::function<Viewer*(std::string_view)> findSession;   // by its id or view id
+    std::function<void(const std::function<void(Viewer&)>&)> eachViewer;
+    session::SessionRegistry kept;                          // sessions without a connection
     std::uint32_t sessions = 0;                             // that have said hello
     bool draining = false;
     std::uint64_t refusedMessages = 0;
@@ -49,7 +53,9 @@ class Viewer {
     void deliver(Delivery&& delivery);
     void tick(std::uint64_t nowUs);
     void drain();
+    void end();  // the connection is gone: its session waits for who comes back
 
+    const session::Session* session() const { return ready_ ? &*session_ : nullptr; }
     const session::Outbox& outbox() const { return outbox_; }
 
    private:
@@ -80,12 +86,23 @@ class Viewer {
     void chunk(std::string_view message);
 
     bool admit(const protocol::Hello& hello);
+    std::optional<session::Kept> takeUp(const protocol::Resume& resume);
+    session::Kept handOver();
+    session::Kept keptSession() const;
+    tl::expected<protocol::Json, protocol::DecodeError> firstDocument(const protocol::Hello& hello, const std::optional<session::Kept>& kept) const;
+    bool follows(const Viewer& other) const;
+    void follow(const session::Session& leader);
+    void tellFollow(std::string problem);
+    Viewer* holderOf(const std::string& session) const;
+    void tellFollowers();
+    bool mayPatch(const protocol::Json& patch, std::optional<std::uint32_t> id);
     void welcome(std::uint32_t id, std::vector<std::string> missingAssets);
     void change(Change change);
     void load(const protocol::SceneRef& ref, protocol::Applied applied, Change change);
     void loaded(const protocol::SceneRef& ref, Loaded result, protocol::Applied applied, Change change);
     std::optional<protocol::DecodeError> finish(protocol::Applied applied, std::shared_ptr<const scene::Scene> base,
                                                 const Change& change);
+    std::optional<protocol::DecodeError> show(session::Proposal proposal, const std::optional<protocol::Input>& input = {});
     void conclude(protocol::Applied applied, std::shared_ptr<const scene::Scene> base, const Change& change);
     void assetLoaded(std::uint32_t id, const std::string& sha256, Loaded result);
     void reportAsset(std::uint32_t id, const std::string& sha256, const scene::Scene& scene);
@@ -103,17 +120,23 @@ class Viewer {
     void updateOccupied();
     void tell(Scheduler& scheduler) const;
     void sendStats(std::uint64_t nowUs);
+    void rest(std::uint64_t nowUs);
 
     Desk& desk_;
     net::Connection& connection_;
     session::Outbox outbox_;
     std::optional<session::Session> session_;
+    bool resumed_ = false;
+    std::string following_;   // role view: what hello.follow named; empty: a session of its own
+    std::string followProblem_;  // as last told
+    bool toldLate_ = false;   // what it follows has changed, and no `state` has said so
     bool ready_ = false;    // welcomed, and known to the scheduler
     bool loading_ = false;  // messages wait in deferred_, so that they apply in order
     std::deque<std::pair<std::string, bool>> deferred_;
     std::size_t deferredBytes_ = 0;
     session::TokenBucket texts_, chunks_;
-    std::uint64_t openedUs_;
+    std::uint64_t openedUs_, heardUs_;
+    bool idle_ = false;     // said nothing for long: its stream rests
 
     std::optional<session::AssetUpload> upload_;
     std::optional<std::pair<std::uint32_t, std::string>> knownAsset_;  // begun, but already here: number, hash

@@ -86,6 +86,9 @@ void Viewer::load(const SceneRef& ref, protocol::Applied applied, Change change)
 
 void Viewer::loaded(const SceneRef& ref, Loaded result, protocol::Applied applied, Change change) {
     loading_ = false;
+    if (!session_) {
+        return;  // taken up from another connection meanwhile
+    }
     if (!result) {
         change.done(problem(ErrorCode::AssetInvalid, result.error().message, "scene"));
     } else {
@@ -106,10 +109,18 @@ void Viewer::loaded(const SceneRef& ref, Loaded result, protocol::Applied applie
 }
 
 void Viewer::conclude(protocol::Applied applied, std::shared_ptr<const scene::Scene> base, const Change& change) {
+    const bool first = !ready_;
     const auto error = finish(std::move(applied), std::move(base), change);
     change.done(error);
-    if (!error && (change.patch.contains("scene") || session_->rev() == 1)) {
+    if (!error && (change.patch.contains("scene") || first)) {
         sendState();
+    }
+    if (!error) {
+        tellFollowers();
+    }
+    // What is followed may have changed while this was being loaded.
+    if (Viewer* leader = !error && first && !following_.empty() ? desk_.findSession(following_) : nullptr) {
+        follow(*leader->session());
     }
 }
 
@@ -119,15 +130,25 @@ std::optional<DecodeError> Viewer::finish(protocol::Applied applied, std::shared
     if (!proposal) {
         return proposal.error();
     }
-    auto view = resolveRequest(proposal->applied.state, proposal->resolved, readsPng_);
+    return show(std::move(*proposal), change.input);
+}
+
+// What is wrong with it, or nothing: then it is the session's state, and what the renderer draws next.
+std::optional<DecodeError> Viewer::show(session::Proposal proposal, const std::optional<protocol::Input>& input) {
+    auto view = resolveRequest(proposal.applied.state, proposal.resolved, readsPng_);
     if (!view) {
         return view.error();
     }
-    const bool otherScene = session_->commit(std::move(*proposal));
-    if (change.input) {
-        session_->inputSeq = change.input->seq;
-        session_->inputClientUs = change.input->tUs;
+    if (const std::size_t bytes = estimatedBytes(*view); bytes > desk_.limits.viewerBytes) {
+        return problem(ErrorCode::Busy, "this takes about " + std::to_string(bytes >> 20) + " MiB of the " + std::to_string(desk_.limits.viewerBytes >> 20) +
+                                            " that one viewer may have; ask for a smaller picture, map or scene", "patch");
     }
+    const bool otherScene = session_->commit(std::move(proposal));
+    if (input) {
+        session_->inputSeq = input->seq;
+        session_->inputClientUs = input->tUs;
+    }
+    outbox_.setFrameRate(view->stream.maxFps);
     Shown shown{.view = std::make_shared<const View>(std::move(*view)),
                 .rev = session_->rev(),
                 .inputSeq = session_->inputSeq,
@@ -155,6 +176,10 @@ void Viewer::sendState() {
 }
 
 void Viewer::on(const protocol::AssetBegin& begin) {
+    if (!following_.empty()) {
+        refuse(problem(ErrorCode::Forbidden, "a view changes its camera and its stream only", "op", begin.id));
+        return;
+    }
     if (upload_) {
         refuse(problem(ErrorCode::Busy, "asset " + std::to_string(upload_->asset()) + " is still on its way; end or abort it", "op",
                        begin.id));

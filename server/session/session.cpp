@@ -30,6 +30,14 @@ tl::expected<Proposal, protocol::DecodeError> Session::propose(protocol::Applied
     return Proposal{std::move(applied), std::move(base), std::make_shared<const scene::Scene>(std::move(*resolved))};
 }
 
+tl::expected<Proposal, protocol::DecodeError> Session::adopt(const protocol::Json& document, const Session& from) const {
+    auto applied = protocol::applyPatch(protocol::Json::object(), document, limits_);
+    if (!applied) {
+        return tl::unexpected(std::move(applied.error()));
+    }
+    return Proposal{std::move(*applied), from.base(), from.resolved()};
+}
+
 bool Session::commit(Proposal proposal) {
     const bool otherScene = proposal.base != current_.base;
     current_ = std::move(proposal);

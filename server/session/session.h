@@ -20,8 +20,9 @@ struct Proposal {
 
 class Session {
    public:
-    Session(std::string id, const protocol::Limits& limits, bool strict)
-        : id_(std::move(id)), limits_(limits), strict_(strict) {}
+    // `rev`: of the document that the first change will be made to.
+    Session(std::string id, const protocol::Limits& limits, bool strict, std::uint32_t rev = 0)
+        : id_(std::move(id)), limits_(limits), strict_(strict), rev_(rev) {}
 
     // The document with `patch` merged in, checked; this session is as before.
     tl::expected<protocol::Applied, protocol::DecodeError> apply(const protocol::Json& patch) const;
@@ -30,6 +31,9 @@ class Session {
     // renderer's cached light holds.
     tl::expected<Proposal, protocol::DecodeError> propose(protocol::Applied applied,
                                                           std::shared_ptr<const scene::Scene> base) const;
+
+    // `document` in place of this session's, for the scene that another session has resolved from it.
+    tl::expected<Proposal, protocol::DecodeError> adopt(const protocol::Json& document, const Session& from) const;
 
     // True if the scene is another one than before.
     bool commit(Proposal proposal);
@@ -50,7 +54,7 @@ class Session {
     std::string id_;
     protocol::Limits limits_;
     bool strict_;
-    std::uint32_t rev_ = 0;
+    std::uint32_t rev_;
     Proposal current_{.applied = {.document = protocol::Json::object()}};
 };
 

@@ -156,15 +156,17 @@ TEST_F(Convergence, AMeshIsRefinedWhileItMovesAndTracedAtRest) {
     EXPECT_FALSE(viewer.frame(kSilenceMs));
 }
 
-TEST_F(Convergence, WhatDoesNotConvergeEndsWithOneStill) {
+TEST_F(Convergence, WhatDoesNotConvergeEndsWithOneStillAndOnceMoreWithoutLoss) {
     RawClient viewer(server_.port());
     start(viewer, {{"transport", {{"mode", "refined"}, {"budget_ms", 0}, {"target_error", 0}}}});
-    std::vector<std::uint32_t> flags;
+    std::vector<std::pair<std::uint32_t, protocol::Encoding>> frames;
     while (const auto picture = viewer.frame(1500)) {
-        flags.push_back(picture->header.flags);
+        frames.emplace_back(picture->header.flags, picture->header.encoding);
         viewer.ack(picture->header.frameSeq);
     }
-    EXPECT_THAT(flags, testing::ElementsAre(0u, protocol::kFrameStill + 0u));
+    using protocol::Encoding;
+    EXPECT_THAT(frames, testing::ElementsAre(std::pair(0u, Encoding::Jpeg), std::pair(protocol::kFrameStill + 0u, Encoding::Jpeg),
+                                             std::pair(protocol::kFrameStill + 0u, Encoding::Png)));
     for (const Json& stats : viewer.stats) {
         EXPECT_FALSE(stats.contains("convergence"));
     }

@@ -24,6 +24,7 @@ Welcome fullWelcome() {
     Welcome welcome;
     welcome.id = 1;
     welcome.session = "s1";
+    welcome.viewId = "v1";
     welcome.server = "a";
     welcome.build = "0.1.0";
     welcome.gpu = "llvmpipe";
@@ -136,7 +137,7 @@ const std::vector<MessageSample<ServerMessage>>& serverSamples() {
          R"("missing_assets":[")" +
              kHash +
              R"("],"op":"welcome","passes":["photon_list"],"protocol":"caustream.v1","resumed":true,"rev":3,)"
-             R"("scenes":["gem","prism"],"server":"a","session":"s1","state":{"outside_index":1.5}})"},
+             R"("scenes":["gem","prism"],"server":"a","session":"s1","state":{"outside_index":1.5},"view_id":"v1"})"},
         {Ok{2}, R"({"id":2,"op":"ok"})"},
         {Ok{2, 5}, R"({"id":2,"op":"ok","rev":5})"},
         {Ok{3, {}, AssetOffer{1, 262144, 1048576}}, R"({"asset":1,"credit":1048576,"have":262144,"id":3,"op":"ok"})"},
