@@ -314,7 +314,9 @@ void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scal
     const bool linear = request.target == Target::Composite && request.sample != Sample::U8;
     const ProgressivePicture::Shown shown = cameraSide.shown(linear);
     Present::Inputs in{.image = shown.image->get(), .mode = Present::Mode::Picture, .scale = scale * shown.gain,
-                       .before = shown.before ? shown.before->get() : 0, .share = shown.share,
+                       .before = shown.before ? shown.before->get() : 0,
+                       .resized = shown.before && (shown.before->width() != shown.image->width() || shown.before->height() != shown.image->height()),
+                       .share = shown.share,
                        .downsample = shown.image->width() > request.width};
     if (request.target == Target::Spectral || request.pass == "map_resolve") in = {.image = mapOf(maps, request.transport.mapSize).get(), .mode = Present::Mode::Map};
     if (request.target == Target::Pass) {

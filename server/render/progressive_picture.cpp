@@ -24,6 +24,12 @@ class Bytes {
     std::string text;
 };
 
+// But for the size.
+bool sameView(const std::string& a, const std::string& b) {
+    constexpr std::size_t kSize = 2 * sizeof(int);
+    return a.size() == b.size() && a.compare(0, a.size() - kSize, b, 0, b.size() - kSize) == 0;
+}
+
 }  // namespace
 
 std::string pictureKey(const Request& request) {
@@ -32,7 +38,7 @@ std::string pictureKey(const Request& request) {
     key.add(scene.geometry.get());   // first: two pictures of one scene begin alike
     key.add(scene.environmentColor).add(scene.outsideIndex);
     const scene::Camera& camera = request.camera;
-    key.add(camera.eye).add(camera.target).add(camera.up).add(camera.fovYDeg).add(request.width).add(request.height);
+    key.add(camera.eye).add(camera.target).add(camera.up).add(camera.fovYDeg);
     key.add(request.transport.bounces);
     for (const scene::Light& light : scene.lights) {
         key.add(light.type).add(light.position).add(light.direction).add(light.innerConeDeg).add(light.outerConeDeg);
@@ -50,6 +56,7 @@ std::string pictureKey(const Request& request) {
             key.add(optics::refractiveIndex(material.dispersion, nm)).add(material.absorption.at(nm));
         }
     }
+    key.add(request.width).add(request.height);   // last: a moving picture may be smaller than the one at rest
     return key.text;
 }
 
@@ -77,7 +84,7 @@ ProgressivePicture::Sample ProgressivePicture::begin(const std::string& key, dou
         pictures_.emplace_front().key = key;
     }
     Picture& picture = pictures_.front();
-    if (moving_ == &color && movingKey_ == key) {
+    if (moving_ == &color && sameView(movingKey_, key)) {
         picture.fades = true;
         picture.share = 0.0;
         picture.luminance = 0.0;

@@ -25,7 +25,7 @@ class ProgressivePicture {
     };
     struct Shown {                         // for `present`
         const gl::Texture* image = nullptr;
-        const gl::Texture* before = nullptr;   // mixed with it, after the tone curve; may be none
+        const gl::Texture* before = nullptr;   // mixed with it, after the tone curve; may be none, or of another size
         float share = 1.0f;                // of `image`
         float gain = 1.0f;                 // of the exposure
     };
@@ -36,7 +36,7 @@ class ProgressivePicture {
     void move(const std::string& key, const gl::Texture& color);
     // Another frame was drawn into it, whose like is not shown in a row: a still, a pass.
     void interrupt() { moving_ = nullptr; }
-    // At rest: before `color` is drawn, which may still hold the last picture in motion and is taken if it does.
+    // At rest: before `color` is drawn, which may still hold the last picture in motion, of any size, and is taken if it does.
     // `weight` > 0: how good the picture to be drawn is; less than before begins anew. `wanted`: samples a pixel of a
     // picture that is done.
     Sample begin(const std::string& key, double weight, int wanted, gl::Texture& color);

@@ -1,5 +1,6 @@
-// One program per mode (MODE: Present::Mode); with FADE a picture takes the place of another; with DOWNSAMPLE for an image of twice the size a side: each of the four
-// pixels is brought to display range before they are averaged, so that bright edges stay smooth.
+// One program per mode (MODE: Present::Mode); with FADE a picture takes the place of another, with RESIZED of one of another
+// size; with DOWNSAMPLE for an image of twice the size a side: each of the four pixels is brought to display range before they
+// are averaged, so that bright edges stay smooth.
 #include "common/tone.glsl"
 #include "common/false_colour.glsl"
 uniform sampler2D u_image;
@@ -15,7 +16,12 @@ layout(location = 0) out vec4 o_color;
 vec3 shown(ivec2 at) {
     vec4 value = texelFetch(u_image, at, 0);
 #if MODE == 0 && FADE
-    vec3 before = toneCurve(intoGamut(texelFetch(u_before, at, 0).rgb * u_scale));
+#if RESIZED
+    vec3 light = textureLod(u_before, (vec2(at) + 0.5) / vec2(textureSize(u_image, 0)), 0.0).rgb;
+#else
+    vec3 light = texelFetch(u_before, at, 0).rgb;
+#endif
+    vec3 before = toneCurve(intoGamut(light * u_scale));
     return mix(before, toneCurve(intoGamut(value.rgb * u_scale)), u_share);
 #elif MODE == 0
     return toneCurve(intoGamut(value.rgb * u_scale));

@@ -80,6 +80,45 @@ TEST_F(Progressive, BrightnessNeverJumps) {
     EXPECT_GT(std::abs(resting / before - 1.0), 0.03);
 }
 
+// A slow connection's moving pictures are smaller than what is shown at rest.
+TEST_F(Progressive, BrightnessDoesNotJumpWhereTheMovingPictureIsSmaller) {
+    const auto pipeline = freshPipeline();
+    render::Request move = moving(render::Sample::U8, true);
+    const render::Request rest = atRest(move);
+    move.width = move.height = 48;
+    std::vector<double> shown;
+    for (int i = 0; i < 2; ++i) shown.push_back(brightness(pipeline->run(move)));
+    const double before = shown.back();
+    for (int i = 0; i < 40; ++i) shown.push_back(brightness(pipeline->run(rest)));
+    EXPECT_GT(std::abs(shown.back() / before - 1.0), 0.03);   // a jump that there could be
+    for (int i = 0; i < 10; ++i) shown.push_back(brightness(pipeline->run(move)));
+    for (std::size_t i = 1; i < shown.size(); ++i) EXPECT_NEAR(shown[i] / shown[i - 1], 1.0, 0.02) << "frame " << i;
+}
+
+// Neither the light's photons nor the picture's samples are lost to a smaller picture in between.
+TEST_F(Progressive, ASmallerPictureLosesNothing) {
+    const auto pipeline = freshPipeline(), undisturbed = freshPipeline();
+    const render::Request rest = atRest(moving(render::Sample::F32, true));
+    render::Request small = rest;
+    small.width = small.height = 48;
+    small.converge = false;
+    std::vector<float> expected, got;
+    std::uint64_t photons = 0;
+    for (int i = 0; i < 6; ++i) {
+        expected = floats(undisturbed->run(rest));
+        const render::Frame frame = pipeline->run(rest);
+        got = floats(frame);
+        EXPECT_GT(frame.stats.convergence->photons, photons);
+        photons = frame.stats.convergence->photons;
+        const render::Frame between = pipeline->run(small);
+        EXPECT_EQ(between.width, 48);
+        for (const render::PlanEntry& entry : between.stats.plan) {
+            if (entry.pass == "photon_paths" || entry.pass == "receiver_depth") { EXPECT_FALSE(entry.run) << entry.pass; }
+        }
+    }
+    EXPECT_LT(difference(got, expected), 0.02);   // as many samples; photons a frame depend on the clock
+}
+
 TEST_F(Progressive, MotionThatResumesAmidThePassageDoesNotJumpEither) {
     const auto pipeline = freshPipeline();
     const render::Request move = moving(), rest = atRest(move);

@@ -7,8 +7,8 @@ namespace caustream::render {
 namespace {
 constexpr int kModes = 5;
 
-std::vector<gl::Flag> flags(int mode, bool downsample, bool fade = false) {
-    return {{"MODE", mode}, {"DOWNSAMPLE", downsample}, {"FADE", fade}};
+std::vector<gl::Flag> flags(int mode, bool downsample, bool fade = false, bool resized = false) {
+    return {{"MODE", mode}, {"DOWNSAMPLE", downsample}, {"FADE", fade}, {"RESIZED", fade && resized}};
 }
 }  // namespace
 
@@ -17,7 +17,7 @@ void Present::run(const Inputs& in, int width, int height, GLenum format, const 
     const gl::Framebuffer target = gl::makeFramebuffer("present", {out.image.get()});
     glBindFramebuffer(GL_FRAMEBUFFER, target.get());
     glViewport(0, 0, width, height);
-    const GLuint program = shaders_.program("present", flags(static_cast<int>(in.mode), in.downsample, in.before != 0));
+    const GLuint program = shaders_.program("present", flags(static_cast<int>(in.mode), in.downsample, in.before != 0, in.resized));
     glUseProgram(program);
     gl::Uniforms(program)
         .set("u_image", 0)
@@ -26,10 +26,14 @@ void Present::run(const Inputs& in, int width, int height, GLenum format, const 
         .set("u_depthImage", in.depthImage)
         .set("u_before", 1)
         .set("u_share", in.share);
-    if (in.before) glBindTextureUnit(1, in.before);
+    if (in.before) {
+        glBindTextureUnit(1, in.before);
+        glBindSampler(1, in.resized ? linear_.get() : 0);
+    }
     glBindTextureUnit(0, in.image);
     glBindVertexArray(vertexArray_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindSampler(1, 0);
 }
 
 void Present::warmUp() {
@@ -37,7 +41,7 @@ void Present::warmUp() {
         shaders_.program("present", flags(mode, false));
         shaders_.program("present", flags(mode, true));
     }
-    shaders_.program("present", flags(int(Mode::Picture), false, true));
+    for (const bool resized : {false, true}) shaders_.program("present", flags(int(Mode::Picture), false, true, resized));
 }
 
 }  // namespace caustream::render

@@ -23,6 +23,7 @@ class Present {
         float scale = 1.0f;        // Picture: 2^EV; Linear: unit of the output; Map: multiplies first
         bool depthImage = false;   // Layer: the layer is in red (depth or R32F), not in w
         GLuint before = 0;         // Picture: the image that `image` takes the place of, or none
+        bool resized = false;      // it has another size than `image`
         float share = 1.0f;        // of `image` after the tone curve, the rest is `before`
         bool downsample = false;   // the image is twice the output's size a side: 4x anti-aliasing
     };
@@ -30,7 +31,8 @@ class Present {
         gl::Texture& image;        // RGBA8 (sRGB code values) or RGBA32F, rows top to bottom
     };
 
-    explicit Present(gl::ShaderLibrary& shaders) : shaders_(shaders), vertexArray_(gl::makeVertexArray()) {}
+    explicit Present(gl::ShaderLibrary& shaders)
+        : shaders_(shaders), vertexArray_(gl::makeVertexArray()), linear_(gl::makeSampler(GL_LINEAR, GL_CLAMP_TO_EDGE, "present")) {}
 
     // Makes `out.image` anew if it is not width x height of `format` (GL_RGBA8 or GL_RGBA32F).
     void run(const Inputs& in, int width, int height, GLenum format, const Outputs& out);
@@ -39,6 +41,7 @@ class Present {
    private:
     gl::ShaderLibrary& shaders_;
     gl::VertexArray vertexArray_;  // empty: core profile draws nothing without one
+    gl::Sampler linear_;           // for what is resized
 };
 
 }  // namespace caustream::render
