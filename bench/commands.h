@@ -6,6 +6,7 @@
 namespace caustream::bench {
 
 void addConverge(CLI::App& app);     // a viewer at rest: how soon the map is good
+void addEncode(CLI::App& app);       // the ways from a drawn picture to a JPEG
 void addErrorVsTime(CLI::App& app);   // error and time of many configurations
 void addEstimate(CLI::App& app);      // the error estimate beside the true error
 void addFrame(CLI::App& app);         // render times in this process

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
     CLI::App app{"caustream-bench: prints what frames cost. Quote ratios of one run, not milliseconds of different machines."};
     app.require_subcommand(1);
     addConverge(app);
+    addEncode(app);
     addErrorVsTime(app);
     addEstimate(app);
     addFrame(app);

@@ -39,7 +39,7 @@ double pictureMs(const render::FrameStats& stats, double encodeMs) {
     for (const render::StageTime& stage : stats.stages) {
         const std::string_view pass = stage.pass;
         const bool pixels = pass.starts_with("camera_") || pass.ends_with("_refraction") || pass == "thesis_receivers" ||
-                            pass == "present" || pass == "read_back";
+                            pass == "present" || pass == "planar_yuv" || pass == "read_back";
         ms += pixels ? stage.ms : 0.0;
     }
     return ms;
@@ -51,6 +51,7 @@ stream::EncodeSettings encodingOf(const FrameJob& job, const std::optional<rende
     stream::EncodeSettings settings = job.lossless || job.endsConvergence(reached) ? view.encodeLast : view.encode;
     if (job.level != stream::Ladder::kFixed) {
         settings.jpegQuality = stream::Ladder::at(job.level).jpegQuality;
+        settings.subsampling = stream::Ladder::at(job.level).subsampling;
     }
     return settings;
 }
@@ -93,6 +94,13 @@ session::OutgoingFrame outgoingFrame(const FrameJob& job, const render::Frame& f
     outgoing.mapHash = hashText(frame.mapHash);
     outgoing.buffer = std::move(encoded.buffer);
     return outgoing;
+}
+
+// Whatever comes of drawing it: what may be sent without loss, now or once more, is plain RGB.
+bool alwaysJpeg(const FrameJob& job) {
+    const View& view = *job.shown.view;
+    const bool lossless = view.encodeLast.encoding != protocol::Encoding::Jpeg && (job.still || job.lossless || job.mayEndConvergence());
+    return view.encode.encoding == protocol::Encoding::Jpeg && !lossless;
 }
 
 }  // namespace
@@ -206,7 +214,11 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
         stills_.erase(still);
     } else {
         try {
-            frame = gpu.pipeline.run(requestOf(job));
+            render::Request request = requestOf(job);
+            if (alwaysJpeg(job)) {
+                request.pixels = gpu.pipeline.jpegPixels(encodingOf(job, {}).subsampling == stream::Subsampling::Half);
+            }
+            frame = gpu.pipeline.run(request);
             ++frames_;
         } catch (const std::exception& problem) {
             ++failures_;

@@ -24,8 +24,10 @@ std::uint64_t frameUs(const Shown& shown) { return static_cast<std::uint64_t>(1e
 
 }  // namespace
 
+bool FrameJob::mayEndConvergence() const { return resting() && converge && (still || !wantsStill(shown)); }
+
 bool FrameJob::endsConvergence(const std::optional<render::Convergence>& reached) const {
-    return resting() && converge && reached && reached->converged && (still || !wantsStill(shown));
+    return mayEndConvergence() && reached && reached->converged;
 }
 
 // What was drawn before is no more.

@@ -39,6 +39,9 @@ struct FrameJob {
     // Drawn while nothing moves: worth nothing once something does.
     bool resting() const { return (still || converge) && !requestId; }
 
+    // Whether it may be what the next one asks for: known before it is drawn.
+    bool mayEndConvergence() const;
+
     // Whether this job's frame, drawn with such a map, is the last that its state needs: the map has converged, and of a
     // picture this is the anti-aliased still.
     bool endsConvergence(const std::optional<render::Convergence>& reached) const;

@@ -1,6 +1,7 @@
 // What the renderer is asked for and what it gives back. Values only; no GL types.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <memory>
@@ -45,6 +46,40 @@ struct Transport {
 enum class Target { Composite, Spectral, Pass };
 enum class Sample { U8, F16, F32 };
 
+// How the samples of a picture of three bands and 8 bits lie in memory. Everything else is interleaved.
+enum class PixelLayout {
+    Rgb,       // three bytes a pixel
+    Rgbx,      // four; the last one says nothing. As images are read back: for encoders that step over it
+    Yuv444,    // planes of Y, Cb and Cr (JPEG's: BT.601, full range), see planesOf()
+    Yuv420,    // the same, Cb and Cr of 2x2 pixels each; an odd picture's last column and row are there twice
+};
+
+constexpr bool isPlanar(PixelLayout layout) { return layout == PixelLayout::Yuv444 || layout == PixelLayout::Yuv420; }
+
+// Where the planes of a planar picture lie, in bytes. Rows are padded to whole words, as shaders write them.
+struct Planes {
+    struct Plane {
+        int width = 0, height = 0, stride = 0;
+        std::size_t offset = 0;
+    };
+    std::array<Plane, 3> planes;            // Y, Cb, Cr
+    std::size_t bytes = 0;                  // of all
+};
+
+constexpr Planes planesOf(PixelLayout layout, int width, int height) {
+    Planes all;
+    const int half = layout == PixelLayout::Yuv420 ? 2 : 1;
+    for (std::size_t i = 0; i < all.planes.size(); ++i) {
+        const int divide = i == 0 ? 1 : half;
+        Planes::Plane& plane = all.planes[i];
+        plane.width = (width + half - 1) / half * half / divide, plane.height = (height + half - 1) / half * half / divide;
+        plane.stride = (plane.width + 3) / 4 * 4;
+        plane.offset = all.bytes;
+        all.bytes += static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(plane.height);
+    }
+    return all;
+}
+
 struct Request {
     std::shared_ptr<const scene::Scene> scene;  // with the session's lights and materials in place of the file's
     scene::Camera camera;
@@ -53,6 +88,7 @@ struct Request {
     Target target = Target::Composite;
     std::string pass;                       // Target::Pass: a name of passNames()
     Sample sample = Sample::U8;             // U8 for pictures; F16 or F32 for the spectral map; F32 pictures are linear
+    PixelLayout pixels = PixelLayout::Rgb;  // of U8 pictures
     bool outerMap = false;                  // Spectral: what landed around the inner map, instead of that
     bool wavelengthBands = false;           // Spectral: one band per wavelength instead of RGB
     optics::Observer observer = optics::Observer::Cie1931;   // the fit: to compare with references made with it
@@ -127,7 +163,8 @@ struct FrameStats {
 struct Frame {
     int width = 0, height = 0, bands = 3;
     Sample sample = Sample::U8;
-    std::vector<std::uint8_t> pixels;       // interleaved, rows top to bottom; sRGB for U8, linear otherwise
+    PixelLayout layout = PixelLayout::Rgb;
+    std::vector<std::uint8_t> pixels;       // as `layout` says, rows top to bottom; sRGB for U8, linear otherwise
     std::vector<double> wavelengthsNm;      // traced
     glm::mat4 lightMatrix{1.0f};            // world -> map clip space (x, y in -1..1, row 0 at y = -1)
     std::uint64_t mapHash = 0;              // of the fixed-point map, filled for stills

@@ -20,6 +20,7 @@
 #include "render/map_energy.h"
 #include "render/passes/camera_receivers.h"
 #include "render/passes/gap_fill.h"
+#include "render/passes/planar_yuv.h"
 #include "render/passes/present.h"
 #include "render/read_back.h"
 #include "render/thesis_light_side.h"
@@ -131,10 +132,12 @@ struct Pipeline::Impl {
     GapFill gapFill;
     CameraSide cameraSide;
     Present present;
+    PlanarYuv planarYuv;
 
     std::vector<std::unique_ptr<SceneEntry>> scenes;
     std::list<LightEntry> lights;              // newest first
     gl::Texture output;
+    gl::Buffer planes;
     Calibration calibration;
     struct Chosen {
         const void* scene;
@@ -144,7 +147,7 @@ struct Pipeline::Impl {
     std::list<Chosen> chosen;                  // newest first: what each scene and wish had last
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
-        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), tracedSide(s), gapFill(s), cameraSide(s), present(s) {
+        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), tracedSide(s), gapFill(s), cameraSide(s), present(s), planarYuv(s) {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
     }
 
@@ -352,6 +355,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     report(2);
     impl_->cameraSide.warmUpCasters();
     impl_->present.warmUp();
+    impl_->planarYuv.warmUp();
     report(3);
 
     // Drivers finish a program when it is first used: one small frame uses them all.
@@ -424,9 +428,17 @@ Frame Pipeline::run(const Request& asked) {
     const bool floats = !plan.runs("present");
     if (!floats) impl.timer.stage("present", [&] { impl.picture(request, maps, request.sample == Sample::U8 ? scale : unit); });
 
+    const bool planar = plan.runs("planar_yuv");
+    if (planar) {
+        impl.timer.stage("planar_yuv", [&] { impl.planarYuv.run(impl.output, request.pixels, {impl.planes}); });
+        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);   // planar_yuv -> read-back
+    }
+
     // Read-back
     impl.timer.stage("read_back", [&] {
-        if (!floats) readImage(impl.output, request.sample, frame);
+        if (planar) readPlanes(impl.planes, request.pixels, request.width, request.height, frame);
+        else if (!floats && request.sample == Sample::U8 && request.pixels == PixelLayout::Rgbx) readRgbx(impl.output, frame);
+        else if (!floats) readImage(impl.output, request.sample, frame);
         else if (request.wavelengthBands) {
             const std::vector<float>& bands = request.outerMap ? maps.outerBands : maps.bands;
             const auto count = maps.wavelengths.nm.size();
@@ -465,6 +477,11 @@ Frame Pipeline::run(const Request& asked) {
     }
     if (glGetError() == GL_OUT_OF_MEMORY) throw Error("the GPU is out of memory; ask for a smaller picture, map or photon grid");
     return frame;
+}
+
+PixelLayout Pipeline::jpegPixels(bool halfChroma) const {
+    if (impl_->context.software()) return PixelLayout::Rgbx;   // here read-back is a copy in memory, and libjpeg converts faster
+    return halfChroma ? PixelLayout::Yuv420 : PixelLayout::Yuv444;
 }
 
 void Pipeline::collect() {

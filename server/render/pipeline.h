@@ -26,6 +26,9 @@ class Pipeline {
     // Draws and reads back one frame. Throws Error with a sentence when the GPU refuses (out of memory, lost).
     Frame run(const Request& request);
 
+    // What `Request::pixels` is best for a JPEG on this GPU; `halfChroma`: of 4:2:0.
+    PixelLayout jpegPixels(bool halfChroma) const;
+
     // Forgets what was cached for scenes that no one holds any more.
     void collect();
 

@@ -176,6 +176,8 @@ void addCameraSide(RenderPlan& plan, const PlanFacts& facts, const Request& requ
         rows.add("dispersive_refraction", (shown.refraction || forced) && inView, glass, shown.refraction ? noGlass : shown.whyNot, optics);
     }
     rows.add("present", shown.present, shown.why, shown.whyNot, request.still ? Without{} : Without{"averaging of 4 pixels: the picture moves"});
+    rows.add("planar_yuv", shown.present && request.sample == Sample::U8 && isPlanar(request.pixels), "a JPEG's planes are read back: fewer bytes",
+             shown.present ? "the picture is read back as RGB" : shown.whyNot);
 }
 
 RenderPlan makePlan(const PlanFacts& facts, const Request& request) {

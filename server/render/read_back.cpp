@@ -35,6 +35,25 @@ void readImage(const gl::Texture& image, Sample sample, Frame& frame) {
     }
 }
 
+void readRgbx(const gl::Texture& image, Frame& frame) {
+    frame.width = image.width();
+    frame.height = image.height();
+    frame.bands = 3;
+    frame.sample = Sample::U8;
+    frame.layout = PixelLayout::Rgbx;
+    frame.pixels = readTexels<std::uint8_t>(image, GL_UNSIGNED_BYTE);
+}
+
+void readPlanes(const gl::Buffer& planes, PixelLayout layout, int width, int height, Frame& frame) {
+    frame.width = width;
+    frame.height = height;
+    frame.bands = 3;
+    frame.sample = Sample::U8;
+    frame.layout = layout;
+    frame.pixels.resize(planesOf(layout, width, height).bytes);
+    glGetNamedBufferSubData(planes.get(), 0, static_cast<GLsizeiptr>(frame.pixels.size()), frame.pixels.data());
+}
+
 void packBands(const std::vector<float>& values, int size, int bands, Sample sample, Frame& frame) {
     frame.width = frame.height = size;
     frame.bands = bands;

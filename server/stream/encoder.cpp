@@ -3,6 +3,7 @@
 #include <png.h>
 #include <turbojpeg.h>
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <string>
@@ -15,6 +16,7 @@ namespace caustream::stream {
 
 using protocol::Encoding;
 using protocol::kFrameHeaderBytes;
+using render::PixelLayout;
 
 void Encoder::Free::operator()(void* handle) const { tjDestroy(handle); }
 
@@ -31,21 +33,44 @@ WireBuffer Encoder::encode(const render::Frame& frame, const EncodeSettings& set
     if (settings.encoding != Encoding::Raw && !picture) {
         throw Error("encoder: JPEG and PNG hold 8-bit RGB only; ask for encoding raw");
     }
+    if (settings.encoding == Encoding::Jpeg) return jpeg(frame, settings);
+    if (frame.layout != PixelLayout::Rgb) {
+        throw Error("encoder: only JPEG is made of planes or of four bytes a pixel; ask the renderer for RGB");
+    }
     switch (settings.encoding) {
-        case Encoding::Jpeg: return jpeg(frame, settings.jpegQuality);
         case Encoding::Png: return png(frame);
         case Encoding::Raw: return raw(frame);
+        case Encoding::Jpeg:
         case Encoding::Zstd: break;
     }
     throw Error("encoder: zstd is not built in; ask for encoding raw");
 }
 
-WireBuffer Encoder::jpeg(const render::Frame& frame, int quality) {
-    unsigned long size = tjBufSize(frame.width, frame.height, TJSAMP_444);
+WireBuffer Encoder::jpeg(const render::Frame& frame, const EncodeSettings& settings) {
+    const int width = frame.width, height = frame.height;
+    const bool planar = render::isPlanar(frame.layout);
+    const bool half = planar ? frame.layout == PixelLayout::Yuv420 : settings.subsampling == Subsampling::Half;
+    const int sampling = half ? TJSAMP_420 : TJSAMP_444;
+    unsigned long size = tjBufSize(width, height, sampling);
     WireBuffer buffer(kFrameHeaderBytes + size);
     unsigned char* out = buffer.data() + kFrameHeaderBytes;
-    if (tjCompress2(compressor_.get(), frame.pixels.data(), frame.width, 0, frame.height, TJPF_RGB, &out, &size,
-                    TJSAMP_444, quality, TJFLAG_NOREALLOC) != 0) {
+    int failed = 0;
+    if (planar) {
+        std::array<const unsigned char*, 3> planes{};
+        std::array<int, 3> strides{};
+        const render::Planes all = render::planesOf(frame.layout, width, height);
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            planes[i] = frame.pixels.data() + all.planes[i].offset;
+            strides[i] = all.planes[i].stride;
+        }
+        failed = tjCompressFromYUVPlanes(compressor_.get(), planes.data(), width, strides.data(), height, sampling, &out,
+                                         &size, settings.jpegQuality, TJFLAG_NOREALLOC);
+    } else {
+        const int format = frame.layout == PixelLayout::Rgbx ? TJPF_RGBX : TJPF_RGB;
+        failed = tjCompress2(compressor_.get(), frame.pixels.data(), width, 0, height, format, &out, &size, sampling,
+                             settings.jpegQuality, TJFLAG_NOREALLOC);
+    }
+    if (failed != 0) {
         throw Error(std::string("JPEG encoder: ") + tjGetErrorStr2(compressor_.get()) + "; try encoding raw");
     }
     buffer.shrink(kFrameHeaderBytes + size);

@@ -4,13 +4,15 @@
 
 #include "protocol/frame_header.h"
 #include "render/frame.h"
+#include "stream/ladder.h"
 #include "stream/wire_buffer.h"
 
 namespace caustream::stream {
 
 struct EncodeSettings {
     protocol::Encoding encoding = protocol::Encoding::Jpeg;  // Zstd is refused
-    int jpegQuality = 90;  // 1..100; chroma is never subsampled
+    int jpegQuality = 90;  // 1..100
+    Subsampling subsampling = Subsampling::None;  // of a JPEG of RGB; planes have theirs already
 };
 
 class Encoder {
@@ -19,12 +21,12 @@ class Encoder {
     ~Encoder();
 
     // Bytes [0, protocol::kFrameHeaderBytes) are free for the header, the payload follows. Throws Error when the codec refuses.
-    // JPEG and PNG need 8-bit RGB; Raw sends any samples as they are, little-endian.
+    // JPEG and PNG need 8-bit RGB, JPEG alone reads planes too; Raw sends any samples as they are, little-endian.
     WireBuffer encode(const render::Frame& frame, const EncodeSettings& settings);
 
    private:
-    WireBuffer jpeg(const render::Frame& frame, int quality);
-    WireBuffer png(const render::Frame& frame);
+    WireBuffer jpeg(const render::Frame& frame, const EncodeSettings& settings);
+    static WireBuffer png(const render::Frame& frame);
     static WireBuffer raw(const render::Frame& frame);
 
     struct Free {
