@@ -16,5 +16,6 @@ void addReference(CLI::App& app);     // exact maps from the CPU
 void addSegments(CLI::App& app);    // what a ray segment of traced transport costs
 void addStability(CLI::App& app);     // stiff, extreme and random scenes
 void addStream(CLI::App& app);        // what the socket adds
+void addTiles(CLI::App& app);         // what changes from frame to frame
 
 }  // namespace caustream::bench

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
     addSegments(app);
     addStability(app);
     addStream(app);
+    addTiles(app);
     try {
         app.parse(argc, argv);   // runs the command
         return 0;
