@@ -6,23 +6,23 @@ namespace caustream::connection {
 
 std::string Address::text() const {
     const bool v6 = host.find(':') != std::string::npos;
-    return "ws://" + (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) + path;
+    return (tls ? "wss://" : "ws://") + (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) + path;
 }
 
 tl::expected<Address, std::string> parseAddress(std::string_view url) {
     const std::string shown(url);
     const auto fail = [&](const std::string& why) {
         return tl::make_unexpected("address \"" + shown + "\": " + why +
-                                   "; write http://host:port or ws://host:port/ws");
+                                   "; write http://host:port or ws://host:port/ws, https or wss with TLS");
     };
+    Address address;
     if (const auto scheme = url.find("://"); scheme != url.npos) {
         const auto name = url.substr(0, scheme);
-        if (name == "https" || name == "wss") return fail("only plain http and ws are spoken here");
-        if (name != "http" && name != "ws") return fail("unknown scheme " + std::string(name));
+        address.tls = name == "https" || name == "wss";
+        if (!address.tls && name != "http" && name != "ws") return fail("unknown scheme " + std::string(name));
         url.remove_prefix(scheme + 3);
     }
 
-    Address address;
     const auto slash = url.find_first_of("/?");
     std::string_view authority = url.substr(0, slash);
     std::string_view path = slash == url.npos ? std::string_view{} : url.substr(slash);
@@ -48,7 +48,7 @@ tl::expected<Address, std::string> parseAddress(std::string_view url) {
     }
     if (address.host.empty()) return fail("no host");
 
-    address.port = 80;
+    address.port = address.tls ? 443 : 80;
     if (!port.empty()) {
         port.remove_prefix(1);
         const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);

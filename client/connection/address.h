@@ -1,4 +1,5 @@
-// Where a server is: "http://host:port" as its ready line says it, or "ws://host:port/ws".
+// Where a server is: "http://host:port" as its ready line says it, or "ws://host:port/ws"; https and wss where it has a
+// certificate.
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,10 +13,11 @@ struct Address {
     std::string host;
     int port = 0;              // 1..65535
     std::string path;          // with its query, "/ws?srv=a1"
-    std::string text() const;  // "ws://host:port/path"
+    bool tls = false;
+    std::string text() const;  // "ws://host:port/path", "wss://..." with TLS
 };
 
-// Port 80 when none is said, path "/ws" when none or "/" is said. The error is a sentence.
+// Port 80, or 443 with TLS, when none is said, path "/ws" when none or "/" is said. The error is a sentence.
 tl::expected<Address, std::string> parseAddress(std::string_view url);
 
 }  // namespace caustream::connection

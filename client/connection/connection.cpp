@@ -19,7 +19,7 @@ Connection::Connection(Options options) : impl_(std::make_unique<Impl>()) {
     handlers.text = [impl](std::string_view text) { impl->onText(text); };
     handlers.binary = [impl](std::span<const std::uint8_t> bytes) { impl->onBinary(bytes); };
     handlers.tick = [impl] { impl->onTick(); };
-    impl->socket = std::make_unique<Socket>(impl->options.address, std::move(handlers));
+    impl->socket = std::make_unique<Socket>(impl->options.address, impl->options.caFile, std::move(handlers));
     impl->socket->start();
 }
 
@@ -29,43 +29,42 @@ Connection::~Connection() {
 
 tl::expected<std::uint32_t, protocol::DecodeError> Connection::update(const Json& patch) {
     std::scoped_lock lock(impl_->mutex);
-    if (auto applied = protocol::applyPatch(impl_->documentLocked(), patch, {}, impl_->options.strict); !applied)
+    if (auto applied = protocol::applyPatch(impl_->document.wanted(), patch, {}, impl_->options.strict); !applied)
         return tl::make_unexpected(applied.error());
     if (!impl_->ready) {
-        impl_->confirmed.merge_patch(patch);
+        impl_->document.keep(patch);
         return 0u;
     }
     const std::uint32_t id = ++impl_->lastId;
-    impl_->unanswered[id] = patch;
+    impl_->document.sent(id, patch);
     impl_->socket->sendText(protocol::encode(protocol::Update{.id = id, .patch = patch}));
     return id;
 }
 
 tl::expected<std::uint32_t, protocol::DecodeError> Connection::input(const Json& patch) {
     std::scoped_lock lock(impl_->mutex);
-    if (auto applied = protocol::applyPatch(impl_->documentLocked(), patch, {}, impl_->options.strict); !applied)
+    if (auto applied = protocol::applyPatch(impl_->document.wanted(), patch, {}, impl_->options.strict); !applied)
         return tl::make_unexpected(applied.error());
-    impl_->confirmed.merge_patch(patch);
     const std::uint32_t seq = ++impl_->inputSeq;
-    if (impl_->ready)
-        impl_->socket->sendText(protocol::encode(protocol::Input{.seq = seq, .tUs = nowUs(), .patch = patch}));
+    if (!impl_->ready) {
+        impl_->document.keep(patch);
+        return seq;
+    }
+    impl_->document.moved(patch);
+    impl_->socket->sendText(protocol::encode(protocol::Input{.seq = seq, .tUs = nowUs(), .patch = patch}));
     return seq;
 }
 
 Json Connection::document() const {
     std::scoped_lock lock(impl_->mutex);
-    return impl_->documentLocked();
+    return impl_->document.wanted();
 }
 
 void Connection::showFile(std::vector<std::uint8_t> glb) {
     auto bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(glb));
     impl_->socket->post([impl = impl_.get(), bytes] {
-        Upload::Wire wire{[impl] { return impl->nextId(); },
-                          [impl](const std::string& text) { impl->socket->sendText(text); },
-                          [impl](auto head, auto payload) { impl->socket->sendBinary(head, payload); }};
-        impl->upload = std::make_unique<Upload>(bytes, std::move(wire));
-        impl->uploadShown = false;
-        if (impl->welcomed) impl->upload->begin(impl->limits);
+        impl->wantedFile = bytes;
+        if (impl->welcomed && !impl->restoring) impl->beginUpload(bytes, false);
     });
 }
 
@@ -88,6 +87,20 @@ std::uint32_t Connection::requestFrame(bool still, bool converge) {
     if (!impl_->ready) return 0;
     impl_->socket->sendText(protocol::encode(protocol::FrameRequest{.id = ++impl_->lastId, .still = still, .converge = converge}));
     return impl_->lastId;
+}
+
+std::uint32_t Connection::record(bool on) {
+    std::scoped_lock lock(impl_->mutex);
+    impl_->recording = on;
+    if (!impl_->ready) return 0;
+    impl_->socket->sendText(protocol::encode(protocol::Record{.id = ++impl_->lastId, .on = on}));
+    return impl_->lastId;
+}
+
+void Connection::reconnect() {
+    impl_->socket->post([impl = impl_.get()] {
+        if (!impl->open) impl->socket->reconnectIn(0);
+    });
 }
 
 void Connection::acknowledge(const Frame& frame, std::uint32_t paintUs) {

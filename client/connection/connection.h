@@ -22,6 +22,8 @@ struct Options {
     Address address;
     std::string clientName;
     std::optional<std::string> token;
+    std::string caFile;  // PEM, instead of the system's authorities; only with TLS
+    std::string follow;  // another session, whose scene is shown with a camera of our own; empty: a scene of our own
     std::uint32_t maxInflight = 2;  // frames under way, 1..8
     bool strict = false;            // a field that the protocol does not know is an error
     bool keepEncoded = false;       // fill Frame::encoded
@@ -36,7 +38,7 @@ class Connection {
 
     // Merges a patch (RFC 7396) into the document and sends it. The error: what the protocol has against it; then
     // nothing changed. Otherwise the id that the server's Ok or ErrorMessage will carry; 0 while there is no
-    // connection, as the whole document goes out when there is one.
+    // connection: the next server is told.
     tl::expected<std::uint32_t, protocol::DecodeError> update(const protocol::Json& patch);
     // The same for what a hand moves (`camera`, `lights`): no reply, the newest wins. The error as above, else its
     // number, which comes back in the header of the first frame that shows it.
@@ -44,7 +46,7 @@ class Connection {
     // What was asked for so far, without what the server refused.
     protocol::Json document() const;
 
-    // Sends a GLB, then shows it. UploadProgress events tell how far it is; an ErrorMessage or StateMessage ends it.
+    // Sends a GLB, then shows it; keeps it, for a server that lacks it. UploadProgress events tell how far it is; an ErrorMessage or StateMessage ends it.
     void showFile(std::vector<std::uint8_t> glb);
 
     void startStream(bool stats);
@@ -52,6 +54,10 @@ class Connection {
     // Asks for one frame, with `converge` as it is drawn while nothing moves; it comes through takeRequested(). 0 while
     // there is no connection.
     std::uint32_t requestFrame(bool still, bool converge = false);
+    // Whether the server writes what this session does to a file; Ok::recording names it. 0 while there is no connection.
+    std::uint32_t record(bool on);
+    // After a Disconnected that does not retry: tries again all the same.
+    void reconnect();
     // The frame is on the screen (or wherever it was to go): the server may send another.
     void acknowledge(const Frame& frame, std::uint32_t paintUs);
 

@@ -1,8 +1,11 @@
 #include "client/connection/connection_impl.h"
-#include "protocol/patch.h"
 
 #include <algorithm>
-#include <random>
+#include <utility>
+
+#include "client/connection/backoff.h"
+#include "client/connection/closing.h"
+#include "protocol/patch.h"
 
 namespace caustream::connection {
 namespace {
@@ -18,16 +21,14 @@ std::uint32_t Connection::Impl::nextId() {
     return ++lastId;
 }
 
-Json Connection::Impl::documentLocked() const {
-    Json document = confirmed;
-    for (const auto& [id, patch] : unanswered) document.merge_patch(patch);
-    return document;
+double Connection::Impl::chance() {
+    return std::uniform_real_distribution<double>()(random);
 }
 
-bool Connection::Impl::documentShows(const std::string& asset) const {
+std::string Connection::Impl::assetShown() const {
     std::scoped_lock lock(mutex);
-    const Json document = documentLocked();
-    return document.contains("scene") && document["scene"] == Json{"asset", asset};
+    const Json scene = document.wanted().value("scene", Json{});
+    return scene.is_array() && scene.size() == 2 && scene[0] == "asset" ? scene[1].get<std::string>() : std::string{};
 }
 
 void Connection::Impl::newsArrived() {
@@ -51,7 +52,7 @@ void Connection::Impl::hello() {
     expected.clear();
     info = std::make_shared<protocol::StreamInfo>();
     open = true;
-    welcomed = false;
+    welcomed = helloRefused = false;
     lastHeardUs = nowUs();
     helloId = nextId();
     protocol::Hello message{
@@ -59,85 +60,119 @@ void Connection::Impl::hello() {
     message.caps = {"jpeg", "png", "raw", "f16", "f32"};
     message.maxInflight = options.maxInflight;
     message.strict = options.strict;
-    if (!session.empty()) message.resume = protocol::Resume{.session = session};
+    if (!options.follow.empty()) {
+        message.role = protocol::Role::View;
+        message.follow = options.follow;
+    }
+    resuming = !session.empty();
+    if (resuming) {
+        std::scoped_lock lock(mutex);
+        message.resume = protocol::Resume{
+            .session = session, .state = document.taken(), .rev = rev, .inputSeq = inputSeq};
+    }
     socket->sendText(protocol::encode(message));
 }
 
 void Connection::Impl::onWelcome(const protocol::Welcome& welcome) {
     welcomed = true;
     session = welcome.session;
+    rev = welcome.rev;
     limits = welcome.limits;
-    // An asset that the document names goes first, whole or not at all; the server says if it still has it.
-    if (upload && !upload->failed() && (!uploadShown || documentShows(upload->sha256())))
-        upload->begin(limits);
-    else
-        replay();
+    serverHas = resuming ? welcome.state : Json::object();
+    socket->settled();
+
+    // What the document shows goes first, whole or not at all; so does a file that the first picture is to be of.
+    const std::string asset = assetShown();
+    const bool lacking = !resuming || std::ranges::find(welcome.missingAssets, asset) != welcome.missingAssets.end();
+    if (const Bytes bytes = asset.empty() || !lacking ? nullptr : kept.get(asset)) return beginUpload(bytes, true);
+    if (wantedFile && !resuming) return beginUpload(wantedFile, false);
+    replay();
+    if (wantedFile) beginUpload(wantedFile, false);
 }
 
-// Says everything again: this server may be another one than before.
+// Says what this server does not know yet: it may be another one than before.
 void Connection::Impl::replay() {
     std::vector<std::string> messages;
     {
         std::scoped_lock lock(mutex);
-        const Json document = documentLocked();
-        confirmed = Json::object();
-        unanswered.clear();
-        if (!document.empty()) {
-            unanswered[++lastId] = document;
-            messages.push_back(protocol::encode(protocol::Update{.id = lastId, .patch = document}));
+        const std::vector<std::string> members =
+            options.follow.empty() ? std::vector<std::string>{} : std::vector<std::string>{"camera", "stream"};
+        for (const Json& patch : document.replay(serverHas, members)) {
+            document.sent(++lastId, patch);
+            messages.push_back(protocol::encode(protocol::Update{.id = lastId, .patch = patch}));
         }
         if (streaming)
             messages.push_back(protocol::encode(protocol::StreamStart{.id = ++lastId, .stats = statsWanted}));
+        if (recording) messages.push_back(protocol::encode(protocol::Record{.id = ++lastId, .on = true}));
         ready = true;
     }
     for (const auto& message : messages) socket->sendText(message);
 }
 
-void Connection::Impl::onOk(const protocol::Ok& ok) {
-    if (upload && upload->take(ok)) {
-        tell(UploadProgress{upload->confirmed(), upload->size()});
-        if (upload->done()) afterUpload();
+void Connection::Impl::beginUpload(const Bytes& bytes, bool isRestored) {
+    Upload::Wire wire{[this] { return nextId(); }, [this](const std::string& text) { socket->sendText(text); },
+                      [this](auto head, auto payload) { socket->sendBinary(head, payload); }};
+    upload = std::make_unique<Upload>(bytes, std::move(wire));
+    restoring = isRestored;
+    upload->begin(limits);
+}
+
+// It is there, or was refused. One that was lost with the document's scene lets all wait that the document says.
+void Connection::Impl::uploadEnded() {
+    const bool restored = std::exchange(restoring, false);
+    if (upload->done()) kept.put(upload->sha256(), upload->bytes(), limits.assetBytes);
+    if (!restored) {
+        wantedFile = nullptr;
+        if (upload->done()) {
+            const protocol::SceneRef scene{.kind = protocol::SceneRef::Kind::Asset, .name = upload->sha256()};
+            const Json patch = protocol::sceneChange(scene);
+            std::scoped_lock lock(mutex);
+            if (ready) {
+                document.sent(++lastId, patch);
+                socket->sendText(protocol::encode(protocol::Update{.id = lastId, .patch = patch}));
+            } else {
+                document.keep(patch);
+            }
+        }
     }
+    std::unique_lock lock(mutex);
+    const bool waited = !ready;
+    lock.unlock();
+    if (waited) replay();
+    if (restored && wantedFile) beginUpload(wantedFile, false);
+}
+
+void Connection::Impl::onOk(const protocol::Ok& ok) {
+    if (ok.rev) rev = *ok.rev;
     if (ok.frame) expected[ok.frame->frameSeq] = ok.frame->mapHash;
     {
         std::scoped_lock lock(mutex);
-        if (const auto found = unanswered.find(ok.id); found != unanswered.end()) {
-            confirmed.merge_patch(found->second);
-            unanswered.erase(found);
-        }
+        document.answered(ok.id, true);
+    }
+    if (upload && upload->take(ok)) {
+        tell(UploadProgress{upload->confirmed(), upload->size()});
+        if (upload->done()) uploadEnded();
     }
     tell(ok);
 }
 
 void Connection::Impl::onError(const protocol::ErrorMessage& error) {
-    const bool ofUpload = upload && upload->take(error);
     if (error.id) {
         std::scoped_lock lock(mutex);
-        unanswered.erase(*error.id);
+        document.answered(*error.id, false);
     }
-    // A session that is not ours to resume: the next hello asks for a new one.
-    if ((error.id == helloId && !welcomed) || error.code == protocol::ErrorCode::SessionTaken) session.clear();
+    if (error.fatal && error.retryMs) comeBack = comeBackMs(*error.retryMs, *error.retryMs / 2, chance());
+    const bool ofHello = error.id == helloId && !welcomed && !error.fatal;
+    if (ofHello && resuming) {
+        // What was right for the last server may be wrong for this one: a fresh session, then the document as a change.
+        session.clear();
+        hello();
+    } else if (ofHello) {
+        helloRefused = error.code == protocol::ErrorCode::Unsupported;
+        socket->close(1000, "");
+    }
     tell(error);
-    if (!ofUpload || !welcomed) return;
-    std::unique_lock lock(mutex);
-    const bool waited = !ready;  // the document, for the asset
-    lock.unlock();
-    if (waited) replay();
-}
-
-// The first time, the uploaded scene is shown; on a server that had forgotten it, the document already names it.
-void Connection::Impl::afterUpload() {
-    const bool show = !std::exchange(uploadShown, true);
-    std::unique_lock lock(mutex);
-    if (show) {
-        const protocol::SceneRef scene{.kind = protocol::SceneRef::Kind::Asset, .name = upload->sha256()};
-        Json patch = protocol::sceneChange(scene);
-        if (ready) socket->sendText(protocol::encode(protocol::Update{.id = lastId + 1, .patch = patch}));
-        unanswered[++lastId] = std::move(patch);
-    }
-    const bool waited = !ready;
-    lock.unlock();
-    if (waited) replay();
+    if (upload && upload->take(error)) uploadEnded();
 }
 
 void Connection::Impl::onText(std::string_view text) {
@@ -153,6 +188,13 @@ void Connection::Impl::onText(std::string_view text) {
                 onOk(value);
             } else if constexpr (std::is_same_v<T, protocol::ErrorMessage>) {
                 onError(value);
+            } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
+                rev = value.rev;
+                {
+                    std::scoped_lock lock(mutex);
+                    document.prune(value.state);
+                }
+                tell(std::move(value));
             } else if constexpr (std::is_same_v<T, protocol::StreamInfo>) {
                 info = std::make_shared<protocol::StreamInfo>(value);
                 tell(std::move(value));
@@ -161,11 +203,10 @@ void Connection::Impl::onText(std::string_view text) {
                 upload->take(value);
                 tell(UploadProgress{upload->confirmed(), upload->size()});
             } else if constexpr (std::is_same_v<T, protocol::Pong>) {
-                tell(RoundTrip{static_cast<double>(lastHeardUs - std::min(value.tUs, lastHeardUs)) / 1000.0});
+                tell(RoundTrip{static_cast<double>(lastHeardUs - std::min(value.tUs, lastHeardUs)) / 1000.0, value.tUs,
+                               value.serverUs, lastHeardUs});
             } else if constexpr (std::is_same_v<T, protocol::Goaway>) {
-                static std::minstd_rand random{std::random_device{}()};
-                comeBackMs = static_cast<int>(std::min<std::uint64_t>(
-                    60'000u, std::uint64_t{value.reconnectMs} + random() % (std::uint64_t{value.jitterMs} + 1)));
+                comeBack = comeBackMs(value.reconnectMs, value.jitterMs, chance());
                 tell(std::move(value));
             } else {
                 tell(std::move(value));
@@ -200,27 +241,26 @@ void Connection::Impl::onBinary(std::span<const std::uint8_t> message) {
 }
 
 void Connection::Impl::onClosed(int code, const std::string& why) {
-    open = welcomed = false;
+    open = welcomed = restoring = false;
+    upload.reset();
     {
         std::scoped_lock lock(mutex);
+        document.lost();
         ready = false;
     }
     newest.take();  // its slot in the window went with the connection
-    if (code == static_cast<int>(protocol::CloseCode::SessionTaken)) session.clear();
-    // What a person must put right does not get better by asking again and again.
-    const bool hopeless = code == static_cast<int>(protocol::CloseCode::AuthRequired) ||
-                          code == static_cast<int>(protocol::CloseCode::Forbidden) ||
-                          code == static_cast<int>(protocol::CloseCode::Version);
-    if (hopeless) socket->close(1000, "", false);
-    if (const int ms = std::exchange(comeBackMs, -1); ms >= 0) socket->reconnectIn(ms);
-    tell(Disconnected{code, why, !hopeless});
+    const Closing closing = closingOf(code, why);
+    const bool retry = closing.retry && !helloRefused;
+    if (!retry) socket->reconnectIn(-1);
+    if (const int ms = std::exchange(comeBack, -1); ms >= 0 && retry) socket->reconnectIn(ms);
+    tell(Disconnected{code, closing.why, retry, socket->waitMs()});
 }
 
 void Connection::Impl::onTick() {
     if (!open) return;
     const std::uint64_t now = nowUs();
     if (now - lastHeardUs > kDeadUs) {
-        socket->close(static_cast<int>(protocol::CloseCode::Timeout), "no answer", true);
+        socket->close(static_cast<int>(protocol::CloseCode::Timeout), "no answer");
     } else if (welcomed && now - lastPingUs > kPingEveryUs) {
         lastPingUs = now;
         socket->sendText(protocol::encode(protocol::Ping{.tUs = now}));

@@ -3,15 +3,16 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <random>
 
 #include "client/connection/connection.h"
 #include "client/connection/decoder.h"
+#include "client/connection/document.h"
+#include "client/connection/kept_files.h"
 #include "client/connection/mailbox.h"
 #include "client/connection/socket.h"
 
 namespace caustream::connection {
-
-using protocol::Json;
 
 struct Connection::Impl {
     Options options;
@@ -22,27 +23,34 @@ struct Connection::Impl {
     bool isNew = false;  // guarded by mutex, like all down to the next blank line
     std::vector<Event> events;
     std::uint32_t lastId = 0, inputSeq = 0;
-    Json confirmed = Json::object();           // what the server took
-    std::map<std::uint32_t, Json> unanswered;  // patches by the id of their update
-    bool ready = false;                        // welcomed, and the document is on its way
-    bool streaming = false, statsWanted = false;
+    Document document;
+    bool ready = false;  // welcomed, and the document is on its way
+    bool streaming = false, statsWanted = false, recording = false;
 
     // The network thread only.
     Decoder decoder;
     std::string session;
+    std::uint32_t rev = 0;  // the newest that the server told
+    bool resuming = false;  // hello brought the document
+    Json serverHas = Json::object();  // its document when it welcomed us
+    KeptFiles kept;
     std::uint32_t helloId = 0;
     protocol::Limits limits;
     std::shared_ptr<const protocol::StreamInfo> info;
     std::map<std::uint32_t, std::string> expected;  // requested frames that were announced: number and map hash
+    Bytes wantedFile;  // to be sent and shown; null: nothing is
     std::unique_ptr<Upload> upload;
-    bool uploadShown = false;  // its scene was asked for, once
-    bool open = false, welcomed = false;
+    bool restoring = false;  // the upload is of a scene that the document already shows
+    bool open = false, welcomed = false, helloRefused = false;
     std::uint64_t lastPingUs = 0, lastHeardUs = 0;
-    int comeBackMs = -1;  // what a goaway asked for
+    int comeBack = -1;  // ms; what a goaway or a busy server asked for
+    std::mt19937 random{std::random_device{}()};
 
     std::uint32_t nextId();
-    Json documentLocked() const;
-    bool documentShows(const std::string& asset) const;
+    double chance();                  // 0..1
+    std::string assetShown() const;   // the SHA-256 of the scene in the document; empty: it is a built-in one
+    void beginUpload(const Bytes& bytes, bool isRestored);
+    void uploadEnded();
     void tell(Event event);
     void newsArrived();
     void hello();
@@ -54,7 +62,6 @@ struct Connection::Impl {
     void onTick();
     void onOk(const protocol::Ok& ok);
     void onError(const protocol::ErrorMessage& error);
-    void afterUpload();
 
     std::unique_ptr<Socket> socket;  // set before its thread starts; the last member, so it ends first
 };

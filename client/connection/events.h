@@ -12,12 +12,14 @@
 namespace caustream::connection {
 
 struct Disconnected {
-    int closeCode = 0;  // the server's; 0: the connection could not be made, or broke
+    int closeCode = 0;  // the server's; kBadCertificate; 0: the connection could not be made, or broke
     std::string why;
     bool willRetry = true;
+    int waitMs = 0;  // until then
 };
 struct RoundTrip {
     double ms = 0.0;
+    std::uint64_t sentUs = 0, serverUs = 0, receivedUs = 0;  // of the ping and its pong; our clock, and the server's
 };
 struct UploadProgress {
     std::uint64_t sent = 0, size = 0;  // bytes that have arrived, of how many

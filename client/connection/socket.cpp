@@ -11,6 +11,9 @@
 #include <random>
 #include <thread>
 
+#include "client/connection/backoff.h"
+#include "client/connection/closing.h"
+
 namespace caustream::connection {
 namespace {
 
@@ -18,7 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxText = 4u << 20;               // a resolved scene with thousands of materials
 constexpr std::size_t kMaxBinary = (256u << 20) + 4096;  // the largest frame payload there is, and its header
-constexpr int kFirstBackoffMs = 100, kLastBackoffMs = 3000;
 constexpr lws_usec_t kTickUs = 100'000;
 constexpr auto kFarewell = std::chrono::milliseconds(300);  // for the close frame to leave when we end
 
@@ -27,10 +29,22 @@ struct Outgoing {
     std::vector<unsigned char> bytes;  // LWS_PRE bytes that the library fills, then the message; masked in place
 };
 
+// The library's words for a certificate that does not fit, made ours; empty for any other failure.
+std::string certificateProblem(const std::string& why, const Address& address) {
+    constexpr std::string_view kMark = "X509_V_ERR = ";
+    const auto at = why.find(kMark);
+    if (at == why.npos) return {};
+    const auto words = why.find(": ", at);
+    const std::string reason = words == why.npos ? why.substr(at) : why.substr(words + 2);
+    return "the certificate of " + address.host + " is not trusted: " + reason +
+           "; --ca FILE names the authority that signed it, and the address must be one it is made out for";
+}
+
 }  // namespace
 
 struct Socket::Impl {
     Address address;
+    std::string caFile;
     SocketHandlers handlers;
     std::thread thread;
     std::atomic<bool> stop{false};
@@ -44,7 +58,8 @@ struct Socket::Impl {
     // The socket's thread only.
     lws* wsi = nullptr;
     bool attempting = false, again = true, closeAsked = false;
-    int closeCode = 0, backoffMs = kFirstBackoffMs, peerCode = 0;
+    int closeCode = 0, peerCode = 0;
+    Backoff backoff;
     std::string closeWhy;
     Clock::time_point nextAttempt{};
     std::vector<std::uint8_t> received;
@@ -75,8 +90,9 @@ const lws_protocols* Socket::Impl::protocols() {
     return list;
 }
 
-Socket::Socket(Address address, SocketHandlers handlers) : impl_(std::make_unique<Impl>()) {
+Socket::Socket(Address address, const std::string& caFile, SocketHandlers handlers) : impl_(std::make_unique<Impl>()) {
     impl_->address = std::move(address);
+    impl_->caFile = caFile;
     impl_->handlers = std::move(handlers);
     impl_->tick.owner = impl_.get();
 
@@ -89,6 +105,13 @@ Socket::Socket(Address address, SocketHandlers handlers) : impl_(std::make_uniqu
     info.timeout_secs = 10;
     info.user = impl_.get();
     info.options = LWS_SERVER_OPTION_VALIDATE_UTF8;
+    if (impl_->address.tls) {
+        info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+        if (!caFile.empty()) {
+            info.client_ssl_ca_filepath = impl_->caFile.c_str();
+            info.options |= LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS;
+        }
+    }
     impl_->context = lws_create_context(&info);
 }
 
@@ -125,8 +148,7 @@ void Socket::post(std::function<void()> work) {
     if (impl_->context) lws_cancel_service(impl_->context);
 }
 
-void Socket::close(int code, const std::string& why, bool again) {
-    impl_->again = again;
+void Socket::close(int code, const std::string& why) {
     impl_->closeCode = code;
     impl_->closeWhy = why.substr(0, 120);  // a close frame holds 125 bytes
     impl_->closeAsked = true;
@@ -134,7 +156,18 @@ void Socket::close(int code, const std::string& why, bool again) {
 }
 
 void Socket::reconnectIn(int ms) {
+    impl_->again = ms >= 0;
     impl_->nextAttempt = Clock::now() + std::chrono::milliseconds(ms);
+}
+
+void Socket::settled() {
+    impl_->backoff.reset();
+}
+
+int Socket::waitMs() const {
+    if (!impl_->again) return -1;
+    const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(impl_->nextAttempt - Clock::now());
+    return std::max(0, static_cast<int>(wait.count()));
 }
 
 void Socket::Impl::enqueue(Outgoing message) {
@@ -191,6 +224,7 @@ void Socket::Impl::attempt() {
     info.local_protocol_name = protocols()[0].name;
     info.ietf_version_or_minus_one = -1;
     info.alpn = "http/1.1";
+    if (address.tls) info.ssl_connection = LCCSCF_USE_SSL;
     attempting = true;
     closeAsked = false;
     if (!lws_client_connect_via_info(&info) && attempting) ended("cannot connect");
@@ -206,12 +240,11 @@ void Socket::Impl::ended(const std::string& why) {
         open = false;
         queue.clear();
     }
-    // Full jitter up to the doubling bound: many clients of a server that restarts do not come back at once.
-    nextAttempt =
-        Clock::now() + std::chrono::milliseconds(backoffMs / 2 + static_cast<int>(random() % (backoffMs / 2 + 1)));
-    backoffMs = std::min(2 * backoffMs, kLastBackoffMs);
+    std::uniform_real_distribution<double> share;
+    nextAttempt = Clock::now() + std::chrono::milliseconds(backoff.next(share(random)));
     const int code = std::exchange(peerCode, 0);
-    if (!stop && handlers.closed) handlers.closed(code, why);
+    const std::string certificate = certificateProblem(why, address);
+    if (!stop && handlers.closed) handlers.closed(certificate.empty() ? code : kBadCertificate, certificate.empty() ? why : certificate);
 }
 
 int Socket::Impl::receive(const char* bytes, std::size_t length) {
@@ -263,7 +296,6 @@ int Socket::Impl::callback(lws* wsi, lws_callback_reasons reason, void*, void* i
         case LWS_CALLBACK_CLIENT_ESTABLISHED:
             self->wsi = wsi;
             self->attempting = false;
-            self->backoffMs = kFirstBackoffMs;
             {
                 std::scoped_lock lock(self->mutex);
                 self->open = true;

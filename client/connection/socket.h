@@ -15,7 +15,8 @@ namespace caustream::connection {
 // All are called on the socket's thread.
 struct SocketHandlers {
     std::function<void()> opened;
-    std::function<void(int closeCode, const std::string& why)> closed;  // also after an attempt that failed
+    // Also after an attempt that failed. The code is the server's; kBadCertificate; 0: no connection, or it broke.
+    std::function<void(int closeCode, const std::string& why)> closed;
     std::function<void(std::string_view)> text;
     std::function<void(std::span<const std::uint8_t>)> binary;
     std::function<void()> tick;  // about ten times a second
@@ -23,7 +24,8 @@ struct SocketHandlers {
 
 class Socket {
  public:
-    Socket(Address address, SocketHandlers handlers);
+    // `caFile`: PEM, what a server's certificate is checked against instead of the system's; empty: the system's.
+    Socket(Address address, const std::string& caFile, SocketHandlers handlers);
     void start();
     ~Socket();  // closes, joins the thread
     Socket(const Socket&) = delete;
@@ -35,10 +37,15 @@ class Socket {
     // Runs `work` soon, on the socket's thread. Any thread.
     void post(std::function<void()> work);
 
-    // Closes this connection with a code; a new one is made unless `again` is false. The socket's thread.
-    void close(int code, const std::string& why, bool again);
-    // The next attempt waits this long instead of what the backoff says. The socket's thread.
+    // Closes this connection with a code; a new one is made. The socket's thread.
+    void close(int code, const std::string& why);
+    // The next attempt waits this long instead of what the backoff says; negative: there will be none until this is
+    // called again. The socket's thread.
     void reconnectIn(int ms);
+    // The server took us in: the next loss begins with the shortest wait again. The socket's thread.
+    void settled();
+    // Until the next attempt, ms; negative: there will be none. The socket's thread.
+    int waitMs() const;
 
  private:
     struct Impl;

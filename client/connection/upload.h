@@ -27,6 +27,7 @@ class Upload {
 
     Upload(Bytes bytes, Wire wire);
 
+    const Bytes& bytes() const { return bytes_; }
     const std::string& sha256() const { return sha256_; }
     std::uint64_t size() const { return bytes_->size(); }
     std::uint64_t confirmed() const { return confirmed_; }  // bytes that the server says it has

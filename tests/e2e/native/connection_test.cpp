@@ -47,7 +47,9 @@ TEST(Address, TakesWhatPeopleWrite) {
     EXPECT_EQ(text("host:65535"), "ws://host:65535/ws");
     EXPECT_EQ(text("host"), "ws://host:80/ws");
     EXPECT_EQ(text("http://[::1]:5/"), "ws://[::1]:5/ws");
-    for (const char* wrong : {"", "http://", "http://host:0", "http://host:65536", "http://host:x", "https://host",
+    EXPECT_EQ(text("https://host/"), "wss://host:443/ws");
+    EXPECT_EQ(text("wss://host:9443/?srv=a"), "wss://host:9443/ws?srv=a");
+    for (const char* wrong : {"", "http://", "https://", "http://host:0", "http://host:65536", "http://host:x",
                               "ftp://host", "http://[::1"})
         EXPECT_EQ(text(wrong), "error") << wrong;
 }

@@ -1,0 +1,31 @@
+#include "client/connection/frame_age.h"
+
+#include <algorithm>
+
+namespace caustream::connection {
+
+void FrameAge::pong(std::uint64_t sentUs, std::uint64_t serverUs, std::uint64_t receivedUs) {
+    const std::uint64_t roundTrip = receivedUs - std::min(sentUs, receivedUs);
+    if (serverAheadUs_ && roundTrip > leastRoundTripUs_) return;
+    leastRoundTripUs_ = roundTrip;
+    serverAheadUs_ = static_cast<std::int64_t>(serverUs - (sentUs + roundTrip / 2));
+}
+
+void FrameAge::reset() {
+    serverAheadUs_.reset();
+    newestInput_ = 0;
+}
+
+std::optional<double> FrameAge::painted(const protocol::FrameHeader& header, std::uint64_t paintedUs) {
+    // Only the first frame with an input tells its age: those that follow at rest are later for no fault of their own.
+    if (header.inputSeq > newestInput_ && header.clientUs != 0) {
+        newestInput_ = header.inputSeq;
+        return static_cast<double>(paintedUs - std::min(header.clientUs, paintedUs)) / 1000.0;
+    }
+    if (!serverAheadUs_) return std::nullopt;
+    const auto underWayUs = static_cast<std::int64_t>(paintedUs - header.serverUs) + *serverAheadUs_;
+    const auto onServerUs = std::int64_t{header.holdUs} + header.renderUs + header.encodeUs;
+    return static_cast<double>(std::max<std::int64_t>(underWayUs + onServerUs, 0)) / 1000.0;
+}
+
+}  // namespace caustream::connection
