@@ -93,8 +93,9 @@ std::uint32_t Connection::record(bool on) {
     std::scoped_lock lock(impl_->mutex);
     impl_->recording = on;
     if (!impl_->ready) return 0;
-    impl_->socket->sendText(protocol::encode(protocol::Record{.id = ++impl_->lastId, .on = on}));
-    return impl_->lastId;
+    impl_->recordId = ++impl_->lastId;
+    impl_->socket->sendText(protocol::encode(protocol::Record{.id = impl_->recordId, .on = on}));
+    return impl_->recordId;
 }
 
 void Connection::reconnect() {

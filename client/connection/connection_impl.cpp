@@ -103,7 +103,7 @@ void Connection::Impl::replay() {
         }
         if (streaming)
             messages.push_back(protocol::encode(protocol::StreamStart{.id = ++lastId, .stats = statsWanted}));
-        if (recording) messages.push_back(protocol::encode(protocol::Record{.id = ++lastId, .on = true}));
+        if (recording) messages.push_back(protocol::encode(protocol::Record{.id = recordId = ++lastId, .on = true}));
         ready = true;
     }
     for (const auto& message : messages) socket->sendText(message);
@@ -160,6 +160,7 @@ void Connection::Impl::onError(const protocol::ErrorMessage& error) {
     if (error.id) {
         std::scoped_lock lock(mutex);
         document.answered(*error.id, false);
+        if (*error.id == recordId) recording = false;
     }
     if (error.fatal && error.retryMs) comeBack = comeBackMs(*error.retryMs, *error.retryMs / 2, chance());
     const bool ofHello = error.id == helloId && !welcomed && !error.fatal;

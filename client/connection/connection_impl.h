@@ -22,7 +22,7 @@ struct Connection::Impl {
     std::condition_variable news;
     bool isNew = false;  // guarded by mutex, like all down to the next blank line
     std::vector<Event> events;
-    std::uint32_t lastId = 0, inputSeq = 0;
+    std::uint32_t lastId = 0, inputSeq = 0, recordId = 0;
     Document document;
     bool ready = false;  // welcomed, and the document is on its way
     bool streaming = false, statsWanted = false, recording = false;

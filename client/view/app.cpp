@@ -24,6 +24,9 @@ constexpr double kMostPixels = 8.2e6;
 connection::Options connectionOptions(const Options& options) {
     connection::Options out{.address = options.address, .clientName = "caustream-view"};
     if (!options.token.empty()) out.token = options.token;
+    out.caFile = options.caFile;
+    out.follow = options.follow;
+    out.maxInflight = 6;  // a long way holds more frames; on a short one the server keeps to two
     out.wake = Window::wake;
     return out;
 }
@@ -42,6 +45,7 @@ App::App(Options options)
     window_.pressed = [this](int key) { handleKey(key); };
     window_.dropped = [this](const std::vector<std::string>& files) { showFile(files.front()); };
     model_.connection = "connecting to " + options_.address.text();
+    model_.following = options_.follow;
     if (!options_.scene.empty()) editor_.showScene({protocol::SceneRef::Kind::Builtin, options_.scene});
     if (!options_.file.empty()) showFile(options_.file);
     connection_.startStream(true);
@@ -64,15 +68,16 @@ void App::run() {
         const protocol::Convergence* convergence = model_.convergence(nowS);
         if (controls_.panel) drawPanel(model_, controls_, editor_, static_cast<float>(panelWidth), convergence);
         drawMessages(model_, static_cast<float>(area.width));
+        drawConnectionNote(model_, static_cast<float>(area.width));
         if (convergence) drawProgress(*convergence, static_cast<float>(area.width));
         ImGui::Render();
-        if (std::exchange(controls_.save, false)) startSaving(nowS);
+        obey(nowS);
 
         glViewport(0, 0, width, height);
         glClearColor(0.03f, 0.03f, 0.035f, 1.0f);
         glClear(GL_COLOR_BUFFER_BIT);
         const std::uint64_t paintStartUs = connection::nowUs();
-        if (frame_) picture_.set(frame_->image);
+        if (frame_) picture_.set(frame_->image, frame_->header.viewWidth, frame_->header.viewHeight);
         picture_.draw(area);
         window_.endFrame();
         if (frame_) {
@@ -85,18 +90,32 @@ void App::run() {
     }
 }
 
+void App::obey(double nowS) {
+    if (std::exchange(controls_.save, false)) startSaving(nowS);
+    if (std::exchange(controls_.reconnect, false)) connection_.reconnect();
+    if (const auto on = std::exchange(controls_.record, std::nullopt)) {
+        connection_.record(*on);
+        if (!*on) model_.say(false, "recorded " + std::exchange(model_.recording, ""), nowS);
+    }
+}
+
 void App::takeNews(double nowS) {
     for (auto& event : connection_.takeEvents()) {
+        if (std::holds_alternative<protocol::Welcome>(event)) age_.reset();
+        if (const auto* pong = std::get_if<connection::RoundTrip>(&event))
+            age_.pong(pong->sentUs, pong->serverUs, pong->receivedUs);
         if (auto* state = std::get_if<protocol::StateMessage>(&event)) {
-            // After a reconnection it is of a session that does not know our changes yet.
+            // It was sent before what has moved since; and after a reconnection before the server knew all our changes.
             const protocol::Json document = connection_.document();
-            if (document.value("scene", protocol::Json{}) == state->state.value("scene", protocol::Json{}))
+            if (!options_.follow.empty() ||
+                document.value("scene", protocol::Json{}) == state->state.value("scene", protocol::Json{}))
                 state->state.merge_patch(document);
             applySettings(state->state, nowS);
         }
         if (std::holds_alternative<protocol::ErrorMessage>(event)) savingSinceS_ = -1.0;
         const bool another = model_.take(event, nowS);
-        if (another) window_.setTitle("caustream: " + model_.scene.name);
+        if (another)
+            window_.setTitle("caustream: " + model_.scene.name + (model_.following.empty() ? "" : ", followed"));
     }
     std::erase_if(model_.messages, [&](const Message& message) { return message.untilS < nowS; });
     if (auto frame = connection_.takeFrame()) frame_ = std::move(*frame);
@@ -128,7 +147,8 @@ void App::handleMouse(const Rectangle& shown) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool onPicture = !io.WantCaptureMouse && model_.haveScene;
     if (onPicture && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        drag_ = io.KeyShift != controls_.leftDragsLight ? Drag::Light : Drag::Orbit;
+        const bool ofLight = io.KeyShift != controls_.leftDragsLight && model_.following.empty();
+        drag_ = ofLight ? Drag::Light : Drag::Orbit;
         if (LightModel* light = model_.editedLight()) lightPath_ = model_.pathOf(*light);
     }
     if (onPicture && (ImGui::IsMouseClicked(ImGuiMouseButton_Right) || ImGui::IsMouseClicked(ImGuiMouseButton_Middle)))
@@ -193,6 +213,8 @@ void App::askForSize(int width, int height, double nowS) {
 }
 
 void App::showFile(const std::string& file) {
+    if (!model_.following.empty())
+        return model_.say(true, "another viewer's scene is followed: a file is opened there", Window::seconds());
     std::ifstream in(file, std::ios::binary);
     std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
     const double nowS = Window::seconds();
@@ -229,6 +251,7 @@ void App::displayed(const connection::Frame& frame, double nowS) {
     frameTimesS_.push_back(nowS);
     model_.shown(header, nowS);
     model_.decodeMs = frame.decodeUs / 1000.0;
+    if (const auto age = age_.painted(header, connection::nowUs())) model_.ageMs = *age;
     // Only of the first frame that shows an input: a later one would count the time since.
     if (header.inputSeq == shownInput_ || header.clientUs == 0) return;
     shownInput_ = header.inputSeq;

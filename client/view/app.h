@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "client/connection/connection.h"
+#include "client/connection/frame_age.h"
 #include "client/view/editor.h"
 #include "client/view/model.h"
 #include "client/view/options.h"
@@ -22,6 +23,7 @@ class App {
     enum class Drag { None, Orbit, Pan, Light };
 
     void takeNews(double nowS);
+    void obey(double nowS);  // what the panel asked for
     void applySettings(protocol::Json& resolved, double nowS);
     void handleMouse(const Rectangle& shown);
     void handleKey(int key);
@@ -46,6 +48,7 @@ class App {
     double wantedSinceS_ = 0.0, savingSinceS_ = -1.0;
     int saved_ = 0;
     std::uint32_t shownInput_ = 0;
+    connection::FrameAge age_;
     std::deque<double> frameTimesS_;  // of the last second
 };
 

@@ -65,12 +65,12 @@ LightPath Model::pathOf(LightModel& edited) const {
     return path;
 }
 
+bool Model::can(const std::string& cap) const {
+    return welcome && std::ranges::find(welcome->caps, cap) != welcome->caps.end();
+}
+
 void Model::shown(const protocol::FrameHeader& header, double nowS) {
-    frameWidth = header.width;
-    frameHeight = header.height;
-    renderMs = header.renderUs / 1000.0;
-    encodeMs = header.encodeUs / 1000.0;
-    payloadKb = header.payloadLen / 1000.0;
+    frame = header;
     if (header.stateRev == shownRev_) return;
     shownRev_ = header.stateRev;
     shownSinceSeq_ = header.frameSeq;
@@ -151,12 +151,15 @@ bool Model::take(const connection::Event& event, double nowS) {
             if constexpr (std::is_same_v<T, protocol::Welcome>) {
                 welcome = value;
                 connected = true;
+                gaveUp = false;
                 connection = value.gpu;
                 statuses.clear();
                 stats.reset();  // a new connection counts its frames from 1 again
                 shownRev_ = shownSinceSeq_ = 0;
             } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
                 another = takeState(value, nowS);
+            } else if constexpr (std::is_same_v<T, protocol::Ok>) {
+                if (value.recording) recording = *value.recording;
             } else if constexpr (std::is_same_v<T, protocol::ErrorMessage>) {
                 upload.reset();
                 say(true, (value.field && !value.field->empty() ? *value.field + ": " : "") + value.message, nowS);
@@ -175,8 +178,11 @@ bool Model::take(const connection::Event& event, double nowS) {
                 say(true, value.why, nowS);
             } else if constexpr (std::is_same_v<T, connection::Disconnected>) {
                 connected = false;
-                connection =
-                    value.willRetry ? "no connection (" + value.why + "), trying again" : "no connection: " + value.why;
+                gaveUp = !value.willRetry;
+                connection = gaveUp ? value.why : "reconnecting: " + value.why;
+                recording.clear();
+                upload.reset();
+                statuses.clear();
             }
         },
         event);

@@ -32,8 +32,10 @@ struct Message {
 };
 
 struct Model {
-    bool connected = false;
-    std::string connection = "connecting";  // one line
+    bool connected = false, gaveUp = false;  // gaveUp: there will be no other attempt by itself
+    std::string connection = "connecting";   // one line
+    std::string following;                   // another session, whose scene is shown; empty: our own
+    std::string recording;                   // the file on the server; empty: nothing is recorded
     std::optional<protocol::Welcome> welcome;
     protocol::SceneSummary scene;
     bool haveScene = false;
@@ -54,9 +56,10 @@ struct Model {
     std::map<std::string, protocol::Status> statuses;
     std::vector<Message> messages;
 
-    double roundTripMs = 0, latencyMs = 0, frameRate = 0, renderMs = 0, encodeMs = 0, decodeMs = 0, payloadKb = 0;
-    int frameWidth = 0, frameHeight = 0;
+    double roundTripMs = 0, latencyMs = 0, ageMs = 0, frameRate = 0, decodeMs = 0;
+    protocol::FrameHeader frame;  // on the screen
 
+    bool can(const std::string& cap) const;  // of the server
     // A frame is on the screen.
     void shown(const protocol::FrameHeader& header, double nowS);
     // How far the picture on the screen has come, once it rests; nothing: it moves, or has nothing to converge.

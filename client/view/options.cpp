@@ -10,6 +10,8 @@ constexpr const char* kHelp = R"(Examples:
   caustream-view
   caustream-view --url http://192.168.1.20:9720 --scene prism
   caustream-view glass.glb
+  caustream-view --url https://render.example.org --token SECRET
+  caustream-view --follow SESSION
   caustream-view --scene gem --set transport.mode=refined --set 'camera.exposure=["ev",9]'
 
 Mouse: left drag orbits, right or middle drag pans, the wheel zooms; Shift + left drag moves the light.
@@ -40,6 +42,8 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     app.add_option("--width", options.width, "of the window")->check(CLI::Range(480, 7680))->capture_default_str();
     app.add_option("--height", options.height, "of the window")->check(CLI::Range(320, 4320))->capture_default_str();
     app.add_option("--token", options.token, "the server's, where it asks for one");
+    app.add_option("--follow", options.follow, "shows another viewer's scene and light, by the session that its panel names");
+    app.add_option("--ca", options.caFile, "PEM file: what an https server's certificate is checked against, instead of the system's");
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
@@ -50,6 +54,10 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     auto address = connection::parseAddress(url);
     if (!address) return wrong(address.error());
     options.address = std::move(*address);
+    if (!options.follow.empty() && (!options.file.empty() || !options.scene.empty()))
+        return wrong("--follow shows another viewer's scene; leave the scene or file out");
+    if (!options.caFile.empty() && !std::filesystem::is_regular_file(options.caFile))
+        return wrong("--ca: cannot read " + options.caFile);
     if (!options.file.empty() && !std::filesystem::is_regular_file(options.file))
         return wrong("cannot read " + options.file);
     for (const auto& text : settings) {

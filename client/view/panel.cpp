@@ -70,9 +70,24 @@ void drawScene(Model& model, Editor& editor) {
                                 ? static_cast<double>(model.upload->sent) / static_cast<double>(model.upload->size)
                                 : 0.0;
         ImGui::ProgressBar(static_cast<float>(part), {-FLT_MIN, 0}, part < 1.0 ? "sending the file" : "loading");
-    } else {
+    } else if (model.following.empty()) {
         ImGui::TextDisabled("or drop a GLB file on the window");
     }
+}
+
+// Whose scene it is, and whether what is done to it is written down.
+void drawSession(const Model& model, Controls& controls) {
+    const std::string& session = model.following.empty() ? model.welcome->session : model.following;
+    ImGui::TextDisabled(model.following.empty() ? "session %.8s" : "follows session %.8s", session.c_str());
+    tooltip(model.following.empty() ? "A second viewer: caustream-view --follow with this session, or the page's #follow="
+                                    : "Its scene, light, glass and map are set there; camera and picture are this window's.");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("copy")) ImGui::SetClipboardText(session.c_str());
+    if (!model.following.empty() || !model.can("record")) return;
+    bool recording = !model.recording.empty();
+    ImGui::SameLine();
+    if (ImGui::Checkbox("record", &recording)) controls.record = recording;
+    if (!model.recording.empty()) ImGui::TextDisabled("recording to %s", model.recording.c_str());
 }
 
 void drawPicture(Model& model, Controls& controls, Editor& editor) {
@@ -271,6 +286,8 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width, co
     ImGui::TextColored(model.connected ? good : bad, model.connected ? "connected" : "offline");
     ImGui::SameLine();
     ImGui::TextWrapped("%s", model.connection.c_str());
+    if (model.gaveUp && ImGui::Button("Connect again", {-FLT_MIN, 0})) controls.reconnect = true;
+    if (model.welcome) drawSession(model, controls);
 
     if (convergence)
         ImGui::TextDisabled(convergence->converged ? "converged: %s photons" : "converging: %s photons",
@@ -278,50 +295,32 @@ void drawPanel(Model& model, Controls& controls, Editor& editor, float width, co
     else if (model.connected && model.frameRate < 2.0)
         ImGui::TextDisabled("at rest: nothing changes, nothing is drawn");
     else if (model.connected)
-        ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to display", model.frameRate, model.latencyMs);
+        ImGui::TextDisabled("%.0f frames/s, %.0f ms from input to picture", model.frameRate, model.latencyMs);
 
+    const double renderMs = model.frame.renderUs / 1000.0;
     if (convergence)
-        ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", model.renderMs, 100.0 * convergence->error);
+        ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", renderMs, 100.0 * convergence->error);
     else if (model.connected && model.stats && model.stats->error)
-        ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", model.renderMs, 100.0 * model.stats->error->total);
+        ImGui::TextDisabled("frame %.1f ms, map error about %.1f %%", renderMs, 100.0 * model.stats->error->total);
     else if (model.connected)
-        ImGui::TextDisabled("frame %.1f ms", model.renderMs);
+        ImGui::TextDisabled("frame %.1f ms", renderMs);
 
+    // Of a scene that is followed, everything but the picture is set elsewhere.
+    const bool followed = !model.following.empty();
+    ImGui::BeginDisabled(followed);
     drawScene(model, editor);
+    ImGui::EndDisabled();
     if (section("Picture")) drawPicture(model, controls, editor);
-    if (section("Light")) drawLight(model, controls, editor);
-    if (section("Glass")) drawGlass(model, editor);
-    if (section("Spectral map")) drawTransport(model, editor);
+    const auto drawSet = [&](const char* name, const auto& draw) {
+        if (!section(name)) return;
+        ImGui::BeginDisabled(followed);
+        draw();
+        ImGui::EndDisabled();
+    };
+    drawSet("Light", [&] { drawLight(model, controls, editor); });
+    drawSet("Glass", [&] { drawGlass(model, editor); });
+    drawSet("Spectral map", [&] { drawTransport(model, editor); });
     drawReadout(model);
-    ImGui::End();
-}
-
-void drawProgress(const protocol::Convergence& convergence, float pictureWidth) {
-    if (convergence.converged) return;
-    const float bottom = ImGui::GetIO().DisplaySize.y, top = bottom - 0.2f * ImGui::GetFontSize();
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.AddRectFilled({0, top}, {pictureWidth, bottom}, IM_COL32(0, 0, 0, 110));
-    list.AddRectFilled({0, top}, {pictureWidth * static_cast<float>(convergence.progress), bottom}, IM_COL32(255, 181, 74, 220));
-}
-
-void drawMessages(const Model& model, float pictureWidth) {
-    std::vector<Message> lines;
-    for (const auto& [key, status] : model.statuses)
-        lines.push_back({status.level == protocol::Status::Level::Error, status.message});
-    lines.insert(lines.end(), model.messages.begin(), model.messages.end());
-    if (!model.connected) lines.push_back({true, model.connection});
-    if (lines.empty()) return;
-    ImGui::SetNextWindowPos({12, ImGui::GetIO().DisplaySize.y - 12}, ImGuiCond_Always, {0, 1});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(pictureWidth - 24, 100.0f), FLT_MAX});
-    ImGui::SetNextWindowBgAlpha(0.8f);
-    ImGui::Begin("##messages", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::PushTextWrapPos(std::max(pictureWidth - 50, 80.0f));
-    for (const auto& line : lines)
-        ImGui::TextColored(line.error ? ImVec4{1, 0.6f, 0.4f, 1} : ImVec4{0.9f, 0.9f, 0.92f, 1}, "%s",
-                           line.text.c_str());
-    ImGui::PopTextWrapPos();
     ImGui::End();
 }
 

@@ -89,9 +89,17 @@ Picture::~Picture() {
     glDeleteProgram(program_);
 }
 
-void Picture::set(const connection::Image& image) {
+void Picture::set(const connection::Image& image, int viewWidth, int viewHeight) {
+    viewWidth_ = std::max(viewWidth, 1);
+    viewHeight_ = std::max(viewHeight, 1);
+    if (image.bands == 3 || image.bands == 1)
+        upload(image);
+    else
+        upload(connection::toPicture(image));
+}
+
+void Picture::upload(const connection::Image& image) {
     using protocol::Sample;
-    if (image.bands != 3 && image.bands != 1) return set(connection::toPicture(image));
     const int format = image.bands == 3 ? GL_RGB : GL_RED;
     const int type = image.sample == Sample::U8    ? GL_UNSIGNED_BYTE
                      : image.sample == Sample::F16 ? GL_HALF_FLOAT
@@ -119,9 +127,10 @@ void Picture::set(const connection::Image& image) {
 
 Rectangle Picture::fit(const Rectangle& area) const {
     if (empty()) return area;
-    const double scale = std::min(static_cast<double>(area.width) / width_, static_cast<double>(area.height) / height_);
-    const int width = static_cast<int>(std::lround(width_ * scale)),
-              height = static_cast<int>(std::lround(height_ * scale));
+    const double scale =
+        std::min(static_cast<double>(area.width) / viewWidth_, static_cast<double>(area.height) / viewHeight_);
+    const int width = static_cast<int>(std::lround(viewWidth_ * scale)),
+              height = static_cast<int>(std::lround(viewHeight_ * scale));
     return {area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height};
 }
 

@@ -15,18 +15,20 @@ class Picture {
     Picture(const Picture&) = delete;
 
     // Linear images (the spectral map) are shown with their brightest texels white; U8 images as they are.
-    void set(const connection::Image& image);
+    // A picture that was sent smaller than its view has the view's size here.
+    void set(const connection::Image& image, int viewWidth, int viewHeight);
     bool empty() const { return width_ == 0; }
-    int width() const { return width_; }
-    int height() const { return height_; }
 
     // As large as fits into `area`, in its middle.
     Rectangle fit(const Rectangle& area) const;
     void draw(const Rectangle& area) const;
 
  private:
+    void upload(const connection::Image& image);
+
     unsigned texture_ = 0, program_ = 0, vertexArray_ = 0;
-    int width_ = 0, height_ = 0, sample_ = 0;
+    int width_ = 0, height_ = 0, sample_ = 0;  // of the texture
+    int viewWidth_ = 1, viewHeight_ = 1;
     float white_ = 0.0f;  // 0: bytes that are sRGB already
 };
 

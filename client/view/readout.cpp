@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "client/connection/convergence_text.h"
+#include "client/connection/readings.h"
 #include "client/view/panel.h"
 
 namespace caustream::view {
@@ -29,27 +30,32 @@ bool beginTable(const char* id) {
     return ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp);
 }
 
+// The page has the same words (readout.js).
 void drawRates(const Model& model) {
     if (!beginTable("##rates")) return;
     row("frames per second", "%.1f", model.frameRate);
-    row("input to display", "%.1f ms", model.latencyMs);
+    row("frame age", "%.1f ms", model.ageMs);
+    row("input to picture", "%.1f ms", model.latencyMs);
     row("round trip", "%.2f ms", model.roundTripMs);
-    row("server: frame time", "%.1f ms", model.renderMs);
-    if (model.stats && model.stats->error) row("map error, estimated", "%.1f %%", 100.0 * model.stats->error->total);
-    row("server: encode", "%.1f ms", model.encodeMs);
+    row("hold", "%.1f ms", model.frame.holdUs / 1000.0);
+    row("render", "%.1f ms", model.frame.renderUs / 1000.0);
+    row("encode", "%.1f ms", model.frame.encodeUs / 1000.0);
+    if (model.stats) row("send", "%.1f ms", model.stats->sendMs);
     row("decode", "%.1f ms", model.decodeMs);
-    row("frame size", "%.0f kB", model.payloadKb);
+    row("quality", connection::qualityText(model.frame).c_str());
+    row("picture", connection::sizeText(model.frame).c_str());
+    row("payload", "%.0f kB", model.frame.payloadLen / 1000.0);
     if (model.stats) {
-        row("photons", "%.0f", model.stats->photons);
+        row("window", "%.0f frames", model.stats->window);
+        row("dropped", connection::dropsText(model.stats->drops).c_str());
+        row("photons", connection::countText(model.stats->photons).c_str());
+        if (model.stats->error) row("map error, estimated", "%.1f %%", 100.0 * model.stats->error->total);
         if (const auto& convergence = model.stats->convergence) {
             row("photons in the map", connection::countText(convergence->photons).c_str());
             row("converges to", "%.2g %%", 100.0 * convergence->target);
         }
-        row("dropped", "%.0f", model.stats->dropped);
-        row("acknowledgement window", "%.0f", model.stats->window);
     }
     ImGui::EndTable();
-    ImGui::TextDisabled("picture %d x %d", model.frameWidth, model.frameHeight);
     if (model.stats && !model.stats->choice.empty()) {
         ImGui::PushTextWrapPos(0.0f);
         ImGui::TextDisabled("%s", model.stats->choice.c_str());
