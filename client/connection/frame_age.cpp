@@ -13,7 +13,6 @@ void FrameAge::pong(std::uint64_t sentUs, std::uint64_t serverUs, std::uint64_t 
 
 void FrameAge::reset() {
     serverAheadUs_.reset();
-    newestInput_ = 0;
 }
 
 std::optional<double> FrameAge::painted(const protocol::FrameHeader& header, std::uint64_t paintedUs) {

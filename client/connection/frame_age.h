@@ -12,7 +12,7 @@ class FrameAge {
  public:
     // From a pong: our clock when the ping left and when the pong came, the server's in between.
     void pong(std::uint64_t sentUs, std::uint64_t serverUs, std::uint64_t receivedUs);
-    // A new connection: another server has another clock.
+    // A new connection: another server has another clock. Inputs are counted on.
     void reset();
     // ms; nothing while the server's clock is not known and the frame shows no new input. `paintedUs`: our clock.
     std::optional<double> painted(const protocol::FrameHeader& header, std::uint64_t paintedUs);

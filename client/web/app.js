@@ -2,10 +2,13 @@
 import { Connection, sentence } from './connection.js';
 import { attachControls } from './controls.js';
 import { Files } from './files.js';
+import { followed, showSession } from './follow.js';
 import { parseFrame } from './frame.js';
+import { Notices } from './notices.js';
 import { Panel } from './panel.js';
 import { dragLight, orbit, pan, project, zoom } from './poses.js';
-import { showConvergence, showRates, showStats } from './readout.js';
+import { Recorder } from './recorder.js';
+import { showConvergence, showFrame, showRates, showStats } from './readout.js';
 import { Rest } from './rest.js';
 import { Session } from './session.js';
 import { View } from './view.js';
@@ -21,28 +24,34 @@ let welcome = null, lightMode = false, roundTripMs = null, newestStats = null;
 let stale = false;    // the panel shows an older document
 
 const rest = new Rest();
+const notices = new Notices(byId('notices'));
 const connection = new Connection(socketUrl(), {
-    hello: () => ({ ...session.resumption(), ...(sessionStorage.token ? { token: sessionStorage.token } : {}) }),
+    hello: () => ({ ...session.introduction(), ...(sessionStorage.token ? { token: sessionStorage.token } : {}) }),
     forget: () => session.forget(),
     welcome: (message) => start(message),
-    state: (message) => { session.resolve(message); problem((message.scene.warnings ?? []).join(' ')); },
+    state: (message) => takeState(message),
     frame: (buffer, recvUs) => receiveFrame(buffer, recvUs),
     'stream.info': (info) => panel.streamInfo(info),
     'asset.credit': (message) => files.credit(message),
     stats: (stats) => { showStats(stats); panel.exposure(stats.exposure_ev ?? 0); newestStats = stats; },
-    status: ({ level, message }) => (level === 'info' ? status(message || connectedText()) : problem(message)),
+    status: (message) => notices.take(message),
     refused: (error) => problem(sentence(error)),
-    roundTrip: (ms) => (roundTripMs = roundTripMs === null ? ms : 0.7 * roundTripMs + 0.3 * ms),
-    link: (state, waitMs) => showLink(state, waitMs),
+    roundTrip: (sentUs, serverUs, receivedUs) => {
+        const ms = (receivedUs - sentUs) / 1000;
+        roundTripMs = roundTripMs === null ? ms : 0.7 * roundTripMs + 0.3 * ms;
+        view.age.pong(sentUs, serverUs, receivedUs);
+    },
+    link: (state, why, waitMs) => showLink(state, why, waitMs),
 });
 const session = new Session(connection, {
     changed: () => (stale = true),
     refused: (error) => problem(sentence(error)),
-});
+}, followed);
+const recorder = new Recorder(connection, { status, refused: (error) => problem(sentence(error)) });
 const view = new View(canvas, {
     ack: (fields) => connection.send({ op: 'ack', ...fields }),
     failed: (error) => problem(sentence(error)),
-    painted: (frame) => { stage.classList.remove('away'); rest.painted(frame); },
+    painted: (frame) => { stage.classList.remove('away'); rest.painted(frame); showFrame(frame); },
 });
 const panel = new Panel(session, view);
 const files = new Files(connection, session, { status, problem, added: (sha256, name) => panel.addUploaded(sha256, name) });
@@ -60,27 +69,49 @@ async function start(message) {
     files.limits = message.limits;
     view.reset();
     panel.welcome(message);
+    notices.clear();
+    showSession(message, status);
     status(connectedText());
     try {
-        await files.restore(message.missing_assets ?? []);
+        // A file that this server will not have is no reason to be without a picture.
+        await files.restore(message.missing_assets ?? []).catch((error) => { if (error.code === 'lost') throw error; problem(sentence(error)); });
         await session.replay(message);
         requestSize();
         await connection.request('stream.start', { stats: true });
         if (document.hidden) connection.request('stream.pause').catch(() => {});
+        recorder.welcome(message);
+        files.resume();
     } catch (error) {
         if (error.code !== 'lost') problem(sentence(error));
     }
 }
 
-function showLink(state, waitMs) {
+let warned = '';
+function takeState(message) {
+    session.resolve(message);
+    const warnings = (message.scene.warnings ?? []).join(' ');
+    if (warnings !== warned) problem(warnings);    // once a scene, not with every change of a followed one
+    warned = warnings;
+}
+
+function showLink(state, why, waitMs) {
     stage.classList.toggle('away', state !== 'open');
     byId('sign-in').hidden = state !== 'auth';
+    byId('ended').hidden = state !== 'ended';
     if (state === 'open') return problem('');
     roundTripMs = null;
+    session.lost();
     files.lost();
-    if (state === 'retry') status(waitMs < 400 ? 'Reconnecting' : `No connection; trying again in ${(waitMs / 1000).toFixed(1)} s`);
-    if (state === 'taken' || state === 'auth') status('Not connected');
-    if (state === 'taken') problem('Another page has taken this session over. Reload to start a new one.');
+    recorder.lost();
+    notices.clear();
+    if (state === 'retry') {
+        const when = waitMs < 1000 ? '' : ` in ${(waitMs / 1000).toFixed(1)} s`;
+        status(`Reconnecting${when}`);
+        notices.take({ key: 'connection', level: 'warning', message: `Reconnecting${when}: ${why}` });
+        return;
+    }
+    status('Not connected');
+    if (state === 'ended') byId('ended-why').textContent = why;
     if (state === 'auth') byId('token').focus();
 }
 
@@ -139,17 +170,17 @@ const poseOf = ({ eye, target, up }) => ({ eye, target, up });
 
 function moveLight(dx, dy) {
     const light = panel.light();
-    if (!light || !session.shown.camera?.eye) return;
+    if (followed || !light || !session.shown.camera?.eye) return;
     const pose = dragLight(light, session.shown.camera, session.lightPath(panel.lightName), dx, dy);
     session.pose({ lights: { [panel.lightName]: pose } });
     byId('hint').hidden = true;    // whoever has found out need not be told
 }
 
 function setLightMode(on) {
-    lightMode = on;
-    stage.classList.toggle('light', on);
-    byId('mode-light').setAttribute('aria-pressed', on);
-    byId('mode-camera').setAttribute('aria-pressed', !on);
+    lightMode = on && !followed;
+    stage.classList.toggle('light', lightMode);
+    byId('mode-light').setAttribute('aria-pressed', lightMode);
+    byId('mode-camera').setAttribute('aria-pressed', !lightMode);
     showLamp();
 }
 
@@ -180,6 +211,7 @@ byId('mode-camera').onclick = commands.camera;
 byId('mode-light').onclick = commands.light;
 byId('reset').onclick = commands.reset;
 byId('save').onclick = commands.save;
+byId('again').onclick = () => connection.connect();
 
 byId('sign-in').onsubmit = (event) => {
     event.preventDefault();
@@ -204,5 +236,5 @@ function everyFrame() {
     requestAnimationFrame(everyFrame);
 }
 requestAnimationFrame(everyFrame);
-setInterval(() => showRates({ fps: view.framesPerSecond(), roundTripMs, latencyMs: view.latencyMs() }), kRatesEveryMs);
+setInterval(() => showRates({ fps: view.framesPerSecond(), ageMs: view.age.ms, roundTripMs, latencyMs: view.latencyMs() }), kRatesEveryMs);
 connection.connect();

@@ -1,34 +1,36 @@
 // The socket: hello, numbered requests and their replies, pings, and coming back after a loss. Knows no pictures.
 
+import { Backoff, closingOf, comeBackMs } from './retry.js';
+
 const kSubprotocol = 'caustream.v1';
-const kFirstRetryMs = 250, kLongestRetryMs = 5000;
 const kPingEveryMs = 1000;
 const kSilenceMs = 12000;        // no pong for this long: the server is frozen or the way to it is gone
-const kSessionTaken = 4409, kAuthRequired = 4401;
+const kAuthRequired = 4401;
 
 export class Connection {
     // handlers: {<op>(message) of every op but ok, error and pong; frame(buffer, recvUs); hello() -> its fields;
-    // forget() what hello offered to resume; refused(error) for errors that answer no request; link(state, detail) with state "open", "retry", "taken" or "auth";
-    // roundTrip(ms)}
+    // forget() the session that hello offered to resume; refused(error) for errors that answer no request; link(state,
+    // why, waitMs) with state "open", "retry", "ended" or "auth"; roundTrip(sentUs, serverUs, receivedUs)}
     constructor(url, handlers) {
         this.url_ = url;
         this.handlers_ = handlers;
         this.requests_ = new Map();
         this.lastId_ = 0;
-        this.retryMs_ = kFirstRetryMs;
+        this.backoff_ = new Backoff();
         this.ready = false;
-        addEventListener('online', () => this.connect());
+        addEventListener('online', () => this.retryTimer_ && this.connect());
     }
 
     connect() {
         clearTimeout(this.retryTimer_);
+        this.retryTimer_ = null;
         clearInterval(this.pingTimer_);
         this.socket_?.close();
         const socket = new WebSocket(this.url_, kSubprotocol);
         socket.binaryType = 'arraybuffer';
         this.socket_ = socket;
         this.comeBackMs_ = null;
-        this.lastError_ = null;
+        this.refusal_ = null;
         this.heardMs_ = performance.now();
         socket.onopen = () => {
             this.pingTimer_ = setInterval(() => this.ping_(), kPingEveryMs);
@@ -64,15 +66,19 @@ export class Connection {
         this.request('hello', {
             client: { name: 'caustream-web', version: '1' },
             caps: ['jpeg', 'png', 'raw', 'f16', 'f32'],
-            max_inflight: 4,
+            max_inflight: 6,    // a long way holds more frames; on a short one the server keeps to two
             ...fields,
         }).catch((error) => {
             if (error.code === 'lost') return;
             this.handlers_.refused(error);
-            // What was right for the last server may be wrong for this one; better a fresh start than none.
-            if (fields.resume && !error.fatal) {
+            if (error.fatal) return;
+            // What was right for the last server may be wrong for this one: a fresh session, then the document as a change.
+            if (fields.resume) {
                 this.handlers_.forget();
                 this.hello_();
+            } else {
+                this.refusal_ = error.code === 'unsupported' ? error : null;
+                this.socket_?.close();
             }
         });
     }
@@ -91,16 +97,16 @@ export class Connection {
         const message = JSON.parse(data);
         if (message.op === 'welcome') {
             this.ready = true;
-            this.retryMs_ = kFirstRetryMs;
+            this.backoff_.reset();
             this.requests_.delete(message.id);
             this.handlers_.link('open');
             this.handlers_.welcome(message);
         } else if (message.op === 'ok' || message.op === 'error') {
             this.answer_(message);
         } else if (message.op === 'pong') {
-            this.handlers_.roundTrip(performance.now() - message.t_us / 1000);
+            this.handlers_.roundTrip(message.t_us, message.server_us, performance.now() * 1000);
         } else if (message.op === 'goaway') {
-            this.comeBackMs_ = (message.reconnect_ms ?? 0) + Math.random() * (message.jitter_ms ?? 0);
+            this.comeBackMs_ = comeBackMs(message);
         } else {
             this.handlers_[message.op]?.(message);
         }
@@ -109,7 +115,7 @@ export class Connection {
     answer_(message) {
         const request = this.requests_.get(message.id);
         this.requests_.delete(message.id);
-        if (message.op === 'error') this.lastError_ = message;
+        if (message.fatal && message.retry_ms) this.comeBackMs_ = comeBackMs({ reconnect_ms: message.retry_ms, jitter_ms: message.retry_ms / 2 });
         if (message.op === 'ok') request?.resolve(message);
         else if (request) request.reject(message);
         else this.handlers_.refused(message);
@@ -125,12 +131,11 @@ export class Connection {
         for (const { reject } of this.requests_.values()) reject({ code: 'lost', message: 'The connection is lost.' });
         this.requests_.clear();
 
-        // Coming back by itself would take the session from the page that just took it, or offer the same wrong token.
-        if (code === kSessionTaken) return this.handlers_.link('taken');
-        if (code === kAuthRequired) return this.handlers_.link('auth');
-        const waitMs = this.comeBackMs_ ?? this.lastError_?.retry_ms ?? this.retryMs_ * (0.75 + 0.5 * Math.random());
-        this.retryMs_ = Math.min(2 * this.retryMs_, kLongestRetryMs);
-        this.handlers_.link('retry', waitMs);
+        const closing = closingOf(code);
+        if (code === kAuthRequired) return this.handlers_.link('auth', closing.why);
+        if (!closing.retry || this.refusal_) return this.handlers_.link('ended', this.refusal_ ? sentence(this.refusal_) : closing.why);
+        const waitMs = this.comeBackMs_ ?? this.backoff_.next();
+        this.handlers_.link('retry', closing.why, waitMs);
         this.retryTimer_ = setTimeout(() => this.connect(), waitMs);
     }
 }

@@ -1,5 +1,6 @@
 // Files in and out: a GLB that is opened or dropped goes up, a still picture comes down.
 import { sentence } from './connection.js';
+import { followed } from './follow.js';
 import { Encoding, frameBlob } from './frame.js';
 import { Upload } from './upload.js';
 
@@ -12,7 +13,8 @@ export class Files {
         this.session_ = session;
         this.page_ = page;
         this.limits = null;          // from the welcome
-        this.kept_ = new Map();      // sha256 -> bytes: for another server that lacks what this page shows
+        this.kept_ = new Map();      // sha256 -> bytes, oldest first: for another server that lacks what this page shows
+        this.waiting_ = null;        // a file that a lost connection kept from being sent
         this.upload_ = null;
         this.awaited_ = null;
         this.bind_();
@@ -37,19 +39,24 @@ export class Files {
 
     async open(file) {
         if (!file || this.upload_) return;
-        if (!this.connection_.ready) return this.page_.problem('There is no connection to send the file over.');
+        if (followed) return this.page_.problem("Another viewer's scene is followed: a file is opened there.");
+        if (!this.connection_.ready) {
+            this.waiting_ = file;
+            return this.page_.problem(`${file.name} is sent when there is a connection again.`);
+        }
         this.upload_ = new Upload(this.connection_, this.limits);
         byId('upload').hidden = false;
         byId('upload-name').textContent = `Sending ${file.name}`;
         try {
             const bytes = new Uint8Array(await file.arrayBuffer());
             const report = await this.upload_.run(bytes, (share) => (byId('upload-progress').value = share));
-            this.kept_.set(report.sha256, bytes);
+            this.keep_(report.sha256, bytes);
             this.page_.added(report.sha256, file.name);
             this.session_.showScene(['asset', report.sha256]);
             this.page_.status(`${file.name}: ${report.triangles.toLocaleString('en')} triangles`);
         } catch (error) {
-            this.page_.problem(`${file.name}: ${sentence(error)}`);
+            if (error.code === 'lost') this.waiting_ = file;
+            else this.page_.problem(`${file.name}: ${sentence(error)}`);
         }
         this.upload_ = null;
         byId('upload').hidden = true;
@@ -59,6 +66,26 @@ export class Files {
     // From the server's asset.credit.
     credit(message) {
         this.upload_?.credit(message);
+    }
+
+    // The oldest are forgotten beyond the size that one file may have; the newest never.
+    keep_(sha256, bytes) {
+        this.kept_.delete(sha256);
+        this.kept_.set(sha256, bytes);
+        let total = 0;
+        for (const kept of this.kept_.values()) total += kept.length;
+        for (const [oldest, kept] of this.kept_) {
+            if (total <= (this.limits?.asset_bytes ?? 0) || oldest === sha256) break;
+            total -= kept.length;
+            this.kept_.delete(oldest);
+        }
+    }
+
+    // After a welcome: a file that did not get through goes on.
+    resume() {
+        const file = this.waiting_;
+        this.waiting_ = null;
+        this.open(file);
     }
 
     // Sends again what a new server lacks of the files that were sent to the old one.
@@ -106,7 +133,7 @@ export class Files {
     }
 
     lost() {
-        this.upload_?.stop('The connection was lost during the upload. Open the file again.');
+        this.upload_?.stop('The connection was lost during the upload.', 'lost');
         this.awaited_?.reject({ message: 'The connection was lost before the picture came.' });
     }
 }

@@ -1,4 +1,5 @@
 // The settings: each control shows a value of the state document and changes it by a patch.
+import { greyOut } from './follow.js';
 import { asCauchy, bToSlider, cauchyWithin, sliderToB } from './glass.js';
 
 const byId = (id) => document.getElementById(id);
@@ -175,6 +176,7 @@ export class Panel {
         const grid = transport.photon_grid ?? 0, mapSize = transport.map_size ?? 512;
         fill(byId('photon-grid'), withOwn(kGrids, grid).map((n) => [n, n ? `${n} × ${n}` : 'Automatic']), grid);
         fill(byId('map-size'), withOwn(kMapSizes, mapSize).map((n) => [n, `${n} × ${n}`]), mapSize);
+        greyOut();
     }
 
     refreshLight_(shown) {

@@ -1,5 +1,7 @@
 // The readings: rates, how wrong the map is, the server's stage times, its plan, and where the light went.
 
+import { Encoding } from './frame.js';
+
 const byId = (id) => document.getElementById(id);
 const kLedger = [
     ['deposited', 'Reached a surface'],
@@ -58,27 +60,61 @@ export function showConvergence(convergence) {
     line.textContent = `${state}: ${count(convergence.photons)} photons, error about ${perCent(convergence.error)}.`;
 }
 
-export function showRates({ fps, roundTripMs, latencyMs }) {
+export function showRates({ fps, ageMs, roundTripMs, latencyMs }) {
     byId('fps').textContent = fps ? `${fps} /s` : 'at rest';
-    byId('round-trip').textContent = roundTripMs === null ? '–' : milliseconds(roundTripMs);
-    byId('latency').textContent = latencyMs === null ? '–' : milliseconds(latencyMs);
+    for (const [id, ms] of [['age', ageMs], ['round-trip', roundTripMs], ['latency', latencyMs]]) {
+        byId(id).textContent = ms === null ? '–' : milliseconds(ms);
+    }
 }
+
+const kFixedLevel = 255, kScaled = 2;
+
+// "level 3, JPEG 60", "fixed, JPEG 90", "without loss": as the native clients have it (client/connection/readings.h).
+function qualityText({ encoding, level, jpegQuality }) {
+    if (encoding !== Encoding.jpeg) return 'without loss';
+    return `${level === kFixedLevel ? 'fixed' : `level ${level}`}, JPEG ${jpegQuality}`;
+}
+
+function sizeText({ flags, width, height, viewWidth, viewHeight }) {
+    return `${width} x ${height}${flags & kScaled ? `, shown at ${viewWidth} x ${viewHeight}` : ''}`;
+}
+
+function dropsText({ replaced = 0, outdated = 0 } = {}) {
+    return [[replaced, 'replaced'], [outdated, 'outdated']].filter(([n]) => n).map(([n, cause]) => `${n} ${cause}`).join(', ') || 'none';
+}
+
+// A frame is on the screen: where its time went, and what it is like. The window's readout has the same words.
+export function showFrame(frame) {
+    const sentMs = newest.send_ms;
+    const facts = [
+        ['hold', milliseconds(frame.holdUs / 1000)],
+        ['render', milliseconds(frame.renderUs / 1000)],
+        ['encode', milliseconds(frame.encodeUs / 1000)],
+        ['send', sentMs === undefined ? '–' : milliseconds(sentMs)],
+        ['decode', milliseconds(frame.decodeMs)],
+        ['quality', qualityText(frame)],
+        ['picture', sizeText(frame)],
+        ['payload', `${(frame.payload.byteLength / 1000).toFixed(0)} kB`],
+        ['window', `${newest.window ?? '–'} frames`],
+        ['dropped', dropsText(newest.drops)],
+        ['photons', count(newest.photons ?? 0)],
+    ];
+    byId('frame').tBodies[0].replaceChildren(...facts.map(([name, value]) => row(cell(name), cell(value, 'number'))));
+}
+
+let newest = {};
 
 // stats: the server's message of that name.
 export function showStats(stats) {
+    newest = stats;
     const stages = [...(stats.stages ?? []), { pass: 'encode', ms: stats.encode_ms ?? 0 }];
     const longest = Math.max(...stages.map((stage) => stage.ms));
     byId('stages').tBodies[0].replaceChildren(...stages.map(({ pass, ms }) =>
         row(cell(words(pass)), bar(ms, longest, `${words(pass)} ${milliseconds(ms)}`), cell(milliseconds(ms), 'number'))));
 
-    byId('frame-time').textContent = milliseconds(stats.render_ms ?? 0);
     byId('choice').textContent = stats.choice ?? '';
     showError(stats.error);
-    const facts = [`Rendered in ${milliseconds(stats.render_ms ?? 0)}`];
-    if (stats.photons) facts.push(`${stats.photons.toLocaleString('en')} photons`);
-    if (stats.window) facts.push(`window ${stats.window}`);
-    if (stats.dropped) facts.push(`${stats.dropped} replaced before sending`);
-    byId('server-line').textContent = [facts.join(', ') + '.', ...(stats.warnings ?? [])].join(' ');
+    byId('server-line').textContent = (stats.warnings ?? []).join(' ');
 
     byId('plan').tBodies[0].replaceChildren(...(stats.plan ?? []).map((entry) => {
         const tr = row(cell(words(entry.pass)), cell(entry.run ? 'run' : 'skip', 'verdict'),

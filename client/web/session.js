@@ -1,22 +1,11 @@
-// This page's copy of the state document. What the user changes is shown at once, sent, and kept, so that any server can
-// be told all of it after a reconnection.
+// What the user sees and changes of the scene. A change is shown at once, sent, and kept, so that any server can be told
+// all of it after a reconnection.
 
+import { Document, mergePatch } from './document.js';
 import { aimedFrom, lightPivot } from './poses.js';
 import { add, length, scale, subtract } from './vector.js';
 
 const kInputEveryMs = 15;    // a fast display must not use up the server's message limit
-
-// RFC 7396. With keepNulls the result is again a patch that does what both did.
-export function mergePatch(target, patch, keepNulls = false) {
-    if (patch === null || typeof patch !== 'object' || Array.isArray(patch)) return patch;
-    const isObject = target !== null && typeof target === 'object' && !Array.isArray(target);
-    const merged = isObject ? { ...target } : {};
-    for (const [key, value] of Object.entries(patch)) {
-        if (value === null && !keepNulls) delete merged[key];
-        else merged[key] = value === null ? null : mergePatch(merged[key], value, keepNulls);
-    }
-    return merged;
-}
 
 // A resolved document with a patch on it. What the patch takes back ("as the file says") stays as it was until the
 // server's next state message tells what the file says.
@@ -26,42 +15,45 @@ function overlay(resolved, patch) {
 
 export class Session {
     // changed() after the shown document changed; refused(error) when the server would not have a change.
-    constructor(connection, { changed, refused }) {
+    constructor(connection, { changed, refused }, followed = null) {
         this.connection_ = connection;
         this.changed_ = changed;
         this.refused_ = refused;
-        this.wishes = {};            // everything this page asked for
+        this.followed_ = followed;   // another session, whose scene is shown
+        this.document_ = new Document();
         this.resolved_ = {};         // the server's document with the file's values in it
-        this.pending_ = null;        // a patch that waits for the one under way
-        this.underWay_ = null;
+        this.lastUpdate_ = 0;
         this.pose_ = null;           // the newest pose, not yet sent
+        this.met_ = false;           // this server has been told what was
+        this.underWay_ = false;      // an update has no answer yet
         this.inputSeq = 0;
         this.sentMs_ = 0;
         this.scene = null;           // the server's summary of the scene
         this.home = null;            // camera and lights as the file has them
+        this.homes_ = new Map();     // of every scene that was shown: one may come back as it was left
     }
 
     // The document as the user should see it: the server's, with what is on its way to it.
     get shown() {
-        const withUnderWay = overlay(this.resolved_, this.underWay_ ?? {});
-        return overlay(withUnderWay, this.pending_ ?? {});
+        return this.document_.unheard().reduce(overlay, this.resolved_);
     }
 
     // From the server's state message.
-    resolve({ state, scene }) {
+    resolve({ rev, state, scene }) {
+        this.rev = rev;
         const sceneKey = JSON.stringify(state.scene);
         this.scene = scene;
-        if (this.home?.sceneKey !== sceneKey) {
+        this.home = this.homes_.get(sceneKey);
+        if (!this.home) {
             const paths = Object.entries(state.lights ?? {}).map(([name, light]) => [name, this.pathOf_(light)]);
-            this.home = { sceneKey, camera: state.camera, lights: state.lights, paths: Object.fromEntries(paths) };
+            this.home = { camera: state.camera, lights: state.lights, paths: Object.fromEntries(paths) };
+            this.homes_.set(sceneKey, this.home);
         }
-        this.resolved_ = overlay(state, this.pose_ ?? {});
-        // A drag may have outlived its scene: a name that is gone would make the server refuse the whole replay.
-        for (const group of ['lights', 'materials']) {
-            for (const name of Object.keys(this.wishes[group] ?? {})) {
-                if (!state[group]?.[name]) delete this.wishes[group][name];
-            }
-        }
+        this.document_.prune(state);
+        // It was sent before what has moved since.
+        const wanted = this.document_.wanted();
+        const isOfOurs = this.followed_ || JSON.stringify(wanted.scene) === sceneKey;
+        this.resolved_ = overlay(state, isOfOurs ? wanted : this.pose_ ?? {});
         this.changed_();
     }
 
@@ -97,6 +89,7 @@ export class Session {
     goHome() {
         if (!this.home) return;
         const { eye, target, up, fov_y_deg } = this.home.camera;
+        if (this.followed_) return this.pose({ camera: { eye, target, up, fov_y_deg } });
         const lights = Object.entries(this.home.lights ?? {}).map(([name, light]) => {
             Object.assign(this.home.paths[name], this.pathOf_(light));
             return [name, { position: light.position, direction: light.direction }];
@@ -104,35 +97,31 @@ export class Session {
         this.pose({ camera: { eye, target, up, fov_y_deg }, lights: Object.fromEntries(lights) });
     }
 
-    // One update at a time: what changes meanwhile goes together with the next.
     change(patch) {
-        this.pending_ = mergePatch(this.pending_ ?? {}, patch, true);
+        this.document_.keep(patch);
         this.changed_();
         this.flush_();
     }
 
+    // One update at a time: what changes meanwhile goes together with the next.
     async flush_() {
-        if (this.underWay_ || !this.pending_ || !this.connection_.ready) return;
-        const patch = this.pending_;
-        this.underWay_ = patch;
-        this.posedMeanwhile_ = {};
-        this.pending_ = null;
-        try {
-            await this.connection_.request('update', { patch });
-            this.keep_(patch);
-            this.keep_(this.posedMeanwhile_);
-        } catch (error) {
-            if (error.code === 'lost') this.pending_ = mergePatch(patch, this.pending_ ?? {}, true);
-            else this.refused_(error);
+        while (this.met_ && !this.underWay_) {
+            const id = ++this.lastUpdate_, patch = this.document_.next(id);
+            if (!patch) return;
+            this.underWay_ = true;
+            try {
+                const { rev } = await this.connection_.request('update', { patch });
+                this.rev = rev ?? this.rev;
+                this.document_.answered(id, true);
+                this.resolved_ = overlay(this.resolved_, patch);
+            } catch (error) {
+                if (error.code === 'lost') return;
+                this.document_.answered(id, false);
+                this.refused_(error);
+            }
+            this.underWay_ = false;
+            this.changed_();
         }
-        this.underWay_ = null;
-        this.changed_();
-        this.flush_();
-    }
-
-    keep_(patch) {
-        this.wishes = mergePatch(this.wishes, patch);
-        this.resolved_ = overlay(this.resolved_, patch);
     }
 
     // Another scene starts from its file: names that both scenes use must not carry old overrides over.
@@ -142,39 +131,51 @@ export class Session {
 
     // A pose of camera or lights; the newest wins.
     pose(patch) {
-        this.pose_ = mergePatch(this.pose_ ?? {}, patch);
-        this.keep_(patch);
-        if (this.underWay_) this.posedMeanwhile_ = mergePatch(this.posedMeanwhile_, patch);
+        if (this.met_) {
+            this.pose_ = mergePatch(this.pose_ ?? {}, patch);
+            this.document_.moved(patch);
+        } else {
+            this.document_.keep(patch);
+        }
+        this.resolved_ = overlay(this.resolved_, patch);
         this.changed_();
     }
 
     // Once per animation frame: sends the newest pose, if there is one.
     sendPose(nowMs) {
-        if (!this.pose_ || !this.connection_.ready || nowMs - this.sentMs_ < kInputEveryMs) return;
+        if (!this.pose_ || nowMs - this.sentMs_ < kInputEveryMs) return;
         this.sentMs_ = nowMs;
         this.connection_.send({ op: 'input', seq: ++this.inputSeq, t_us: Math.round(nowMs * 1000), ...this.pose_ });
         this.pose_ = null;
     }
 
-    // After a welcome: what the server must know again before the stream starts.
+    // The connection is gone; what changes from now on waits.
+    lost() {
+        this.met_ = this.underWay_ = false;
+        this.pose_ = null;
+        this.document_.lost();
+    }
+
+    // After a welcome: what the server must know before the stream starts.
     async replay(welcome) {
         this.id = welcome.session;
         this.rev = welcome.rev;
-        const wishes = this.pending_ ? mergePatch(this.wishes, this.pending_, true) : this.wishes;
-        this.pending_ = null;
-        if (!Object.keys(wishes).length) return;
-        await this.connection_.request('update', { patch: wishes });
-        this.keep_(wishes);
-        this.changed_();
+        this.document_.meet(this.resumed_ ? welcome.state ?? {} : {}, this.followed_ ? ['camera', 'stream'] : undefined);
+        this.met_ = true;
+        await this.flush_();
     }
 
+    // The next hello asks for a new session; the document stays.
     forget() {
         this.id = null;
-        this.wishes = {};
     }
 
-    // For hello: the session to go on with, and its document for a server that has lost it.
-    resumption() {
-        return this.id ? { resume: { session: this.id, state: this.wishes, rev: this.rev, input_seq: this.inputSeq } } : {};
+    // For hello: the session to go on with, its document for a server that has lost it, and whom to follow.
+    introduction() {
+        this.resumed_ = Boolean(this.id);
+        return {
+            ...(this.followed_ ? { role: 'view', follow: this.followed_ } : {}),
+            ...(this.id ? { resume: { session: this.id, state: this.document_.taken, rev: this.rev, input_seq: this.inputSeq } } : {}),
+        };
     }
 }

@@ -21,7 +21,7 @@ export class Upload {
         this.credit_ = offer;
         let offset = offer.have;
         while (offset < bytes.length) {
-            if (this.stopped_) throw { message: this.stopped_ };
+            if (this.stopped_) throw this.stopped_;
             const allowed = this.credit_.have + this.credit_.credit - offset;
             const size = Math.min(this.limits_?.chunk_bytes ?? 256 * 1024, bytes.length - offset, allowed);
             if (size <= 0) {
@@ -32,7 +32,7 @@ export class Upload {
             offset += size;
             progress(this.credit_.have / bytes.length);
         }
-        if (this.stopped_) throw { message: this.stopped_ };
+        if (this.stopped_) throw this.stopped_;
         progress(1);
         return { sha256, ...(await this.connection_.request('asset.end', { asset: this.asset_ })) };
     }
@@ -63,11 +63,11 @@ export class Upload {
         this.waiting_ = null;
     }
 
-    // The user or a lost connection ends it.
-    stop(message) {
-        this.stopped_ = message;
+    // The user or a lost connection (code "lost") ends it.
+    stop(message, code) {
+        this.stopped_ = { message, code };
         if (this.asset_ !== null) this.connection_.send({ op: 'asset.abort', asset: this.asset_ });
-        this.waiting_?.reject({ message });
+        this.waiting_?.reject(this.stopped_);
         this.waiting_ = null;
     }
 }

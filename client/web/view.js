@@ -1,5 +1,6 @@
 // The picture: decodes frames, paints the newest once per animation frame, and acknowledges what was painted.
 import { decodeFrame } from './frame.js';
+import { FrameAge } from './frame_age.js';
 
 const kRateWindowMs = 1000;
 const kLatencySamples = 30;
@@ -13,14 +14,16 @@ export class View {
         this.look = { band: -1 };
         this.latenciesMs_ = [];
         this.paintedMs_ = [];
+        this.age = new FrameAge();
+        this.measuredInput_ = 0;
         this.reset();
     }
 
-    // A new connection counts its frames from 1 again.
+    // A new connection counts its frames from 1 again, and inputs on.
     reset() {
         this.newestSeq_ = 0;
-        this.measuredInput_ = 0;
         this.waiting_ = null;
+        this.age.reset();
         ++this.generation_;
     }
 
@@ -69,7 +72,8 @@ export class View {
             this.latenciesMs_.push(nowMs - frame.clientUs / 1000);
             if (this.latenciesMs_.length > kLatencySamples) this.latenciesMs_.shift();
         }
-        this.report_.painted(frame);
+        this.age.painted(frame, nowMs * 1000);
+        this.report_.painted({ ...frame, decodeMs: (decodedUs - recvUs) / 1000 });
     }
 
     // Frames painted in the last second; 0 when the picture rests.
