@@ -9,8 +9,8 @@ packages=(
     libexpected-dev libembree-dev libgtest-dev libgmock-dev libssl-dev zlib1g-dev
     glmark2-data
 )
-# What only the tests need: a display without a screen, mouse events, a browser.
-test_packages=(xvfb xdotool chromium ca-certificates)
+# What only the tests need: a display without a screen, mouse events, a browser, a compiler with libFuzzer and its symbols.
+test_packages=(xvfb xdotool chromium ca-certificates clang libclang-rt-14-dev llvm)
 
 missing() {
     local package

@@ -19,6 +19,7 @@ float sizeOf(const Bounds& subject) {
 
 Light placeLight(const Bounds& subject, const Bounds& everything) {
     constexpr float kDistanceInRadii = 5.0f, kConeMargin = 1.8f, kIlluminanceLx = 1000.0f;
+    constexpr float kMaxIntensityCd = 1e12f;  // as of any light
     const float radius = sizeOf(subject);
     const glm::vec3 centre = subject.centre();
     Light light;
@@ -31,7 +32,7 @@ Light placeLight(const Bounds& subject, const Bounds& everything) {
     light.direction = (centre - light.position) / distance;
     light.outerConeDeg = std::min(60.0f, kConeMargin * glm::degrees(std::asin(std::min(0.95f, radius / distance))));
     light.innerConeDeg = 0.8f * light.outerConeDeg;
-    light.intensity = kIlluminanceLx * distance * distance;
+    light.intensity = std::min(kIlluminanceLx * distance * distance, kMaxIntensityCd);
     return light;
 }
 

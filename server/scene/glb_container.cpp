@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "scene/gltf_outline.h"
+
 namespace caustream::scene {
 
 namespace {
@@ -77,6 +79,7 @@ tl::expected<void, LoadError> checkContainer(std::span<const std::byte> glb, con
         if (chunk == 0) {
             const auto* text = reinterpret_cast<const char*>(glb.data() + offset);
             if (auto ok = checkJson({text, size}); !ok) return ok;
+            if (auto ok = checkOutline({text, size}); !ok) return ok;
         }
         offset += size;
     }

@@ -47,6 +47,13 @@ std::string firstLine(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
+// A name is copied for every object, warning and error that it is in.
+template <class Named>
+void shortenNames(std::vector<Named>& list) {
+    constexpr std::size_t kMaxNameBytes = 64;
+    for (Named& one : list) cutText(one.name, kMaxNameBytes);
+}
+
 }  // namespace
 
 tl::expected<GltfFile, LoadError> parseGltf(std::span<const std::byte> glb) {
@@ -72,7 +79,18 @@ tl::expected<GltfFile, LoadError> parseGltf(std::span<const std::byte> glb) {
         if (!file.model.images[i].uri.empty())
             return fail("image " + std::to_string(i) + " refers to \"" + file.model.images[i].uri +
                         "\" outside the file, which is never opened");
+    shortenNames(file.model.meshes);
+    shortenNames(file.model.nodes);
+    shortenNames(file.model.materials);
+    shortenNames(file.model.lights);
+    shortenNames(file.model.cameras);
     return file;
+}
+
+void cutText(std::string& text, std::size_t maxBytes) {
+    if (text.size() <= maxBytes) return;
+    while (maxBytes > 0 && (static_cast<unsigned char>(text[maxBytes]) & 0xC0) == 0x80) --maxBytes;
+    text.resize(maxBytes);
 }
 
 tl::expected<std::span<const std::uint8_t>, LoadError> viewBytes(const tinygltf::Model& model, int view,

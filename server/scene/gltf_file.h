@@ -17,12 +17,15 @@ struct GltfFile {
     std::map<int, std::vector<std::uint8_t>> inlineImages;  // image index -> PNG or JPEG of a data: URI
 };
 
-// Refuses what the loader cannot honour: outside files, required extensions it does not know.
+// Refuses what the loader cannot honour: outside files, required extensions it does not know. Names have 64 bytes at most.
 tl::expected<GltfFile, LoadError> parseGltf(std::span<const std::byte> glb);
 
 // `size` bytes of a buffer view from `offset`; an error that names `what` when they are not there.
 tl::expected<std::span<const std::uint8_t>, LoadError> viewBytes(const tinygltf::Model& model, int view,
                                                                  const std::string& what);
+
+// At most `maxBytes` of UTF-8, whole characters.
+void cutText(std::string& text, std::size_t maxBytes);
 
 // A member of an object value, or nullptr: tinygltf's own Get asserts.
 const tinygltf::Value* member(const tinygltf::Value& object, const std::string& key);

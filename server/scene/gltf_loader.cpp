@@ -1,5 +1,6 @@
 #include "scene/gltf_loader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -24,14 +25,34 @@ tl::unexpected<LoadError> fail(std::string message) {
 
 using Status = tl::expected<void, LoadError>;
 
+// A mesh may be placed many times, so that a small file unfolds: by how much is bounded by its own bytes. What no scene
+// of that size comes near: 16 vertices and indices for each byte, and a hundred boxes for free.
+constexpr std::size_t kElementsFree = 1u << 18, kElementsPerByte = 16;
+constexpr std::size_t kElementsPerVisit = 8;  // of a primitive, be it empty
+constexpr std::size_t kMaxObjects = 32'768, kMaxLights = 256, kMaxCameras = 256;  // all are named to every viewer
+constexpr std::size_t kMaxWarnings = 64;
+constexpr std::size_t kMaxErrorBytes = 300;
+constexpr double kFarM = 1e9;      // lights and cameras, as in a state document
+// Shares of the time it takes, roughly: the JSON, the pictures, and the rest for the meshes.
+constexpr double kParsed = 0.1, kPictures = 0.3;
+
+std::size_t elementBudget(std::size_t bytes, const LoadLimits& limits) {
+    return std::min(6 * limits.triangles, kElementsFree + kElementsPerByte * bytes);
+}
+
+bool near(const glm::vec3& p) {
+    return std::abs(p.x) <= kFarM && std::abs(p.y) <= kFarM && std::abs(p.z) <= kFarM;  // false for NaN
+}
+
 class Loader {
  public:
-    Loader(GltfFile file, const LoadLimits& limits)
+    Loader(GltfFile file, std::size_t fileBytes, const LoadLimits& limits, const LoadObserver& observer)
         : file_(std::move(file)),
           model_(file_.model),
           limits_(limits),
+          observer_(observer),
           textures_(file_, limits.texels),
-          budget_(6 * limits.triangles) {}
+          budget_(elementBudget(fileBytes, limits)) {}
 
     tl::expected<Scene, LoadError> load(const std::string& name);
 
@@ -50,19 +71,32 @@ class Loader {
     const Bounds& subject() const {
         return geometry_->casterBounds.empty() ? geometry_->bounds : geometry_->casterBounds;
     }
-    void warn(std::string sentence) { scene_.warnings.push_back(std::move(sentence)); }
+    void warn(std::string sentence) {
+        if (scene_.warnings.size() < kMaxWarnings) scene_.warnings.push_back(std::move(sentence));
+    }
+    Status reached(double share) const;
+    Status reachedMeshes() const;
+    double elementsToRead() const;
 
     GltfFile file_;
     const tinygltf::Model& model_;
     LoadLimits limits_;
+    const LoadObserver& observer_;
     TextureTable textures_;
     std::size_t budget_;  // vertices and indices that may still be read
+    std::size_t budgetBefore_ = 0;  // readMeshes() began
+    double toRead_ = 1.0;           // by it
     NameTable materialNames_, lightNames_, cameraNames_;
     std::vector<PlacedNode> nodes_;
     std::shared_ptr<Geometry> geometry_ = std::make_shared<Geometry>();
     Scene scene_;
-    int defaultMaterial_ = -1;
+    int defaultMaterial_ = -1, casters_ = 0;
 };
+
+Status Loader::reached(double share) const {
+    if (!observer_ || observer_(std::min(share, 1.0))) return {};
+    return tl::unexpected(LoadError{"reading was ended", true});
+}
 
 tl::expected<Scene, LoadError> Loader::load(const std::string& name) {
     scene_.name = name;
@@ -83,6 +117,8 @@ tl::expected<Scene, LoadError> Loader::load(const std::string& name) {
 
 Status Loader::readMaterials() {
     for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(model_.materials.size());
+        if (auto ok = reached(kParsed + (kPictures - kParsed) * share); !ok) return ok;
         const std::string name = materialNames_.unique(model_.materials[i].name, "material", i);
         auto material = readMaterial(model_.materials[i], textures_, name, scene_.warnings);
         if (!material) return tl::unexpected(material.error());
@@ -91,7 +127,34 @@ Status Loader::readMaterials() {
     return {};
 }
 
+// Vertices and indices of all that the nodes place, as the file announces them.
+double Loader::elementsToRead() const {
+    double elements = 1.0;
+    const auto count = [&](int accessor) {
+        return accessor >= 0 && static_cast<std::size_t>(accessor) < model_.accessors.size()
+                   ? static_cast<double>(model_.accessors[static_cast<std::size_t>(accessor)].count)
+                   : 0.0;
+    };
+    for (const PlacedNode& placed : nodes_) {
+        const int mesh = model_.nodes[placed.index].mesh;
+        if (mesh < 0 || static_cast<std::size_t>(mesh) >= model_.meshes.size()) continue;
+        for (const tinygltf::Primitive& primitive : model_.meshes[static_cast<std::size_t>(mesh)].primitives) {
+            const auto position = primitive.attributes.find("POSITION");
+            elements += kElementsPerVisit + count(primitive.indices) +
+                        (position == primitive.attributes.end() ? 0.0 : count(position->second));
+            if (elements > static_cast<double>(budget_)) return static_cast<double>(budget_);  // it will end there
+        }
+    }
+    return elements;
+}
+
+Status Loader::reachedMeshes() const {
+    return reached(kPictures + (1.0 - kPictures) * static_cast<double>(budgetBefore_ - budget_) / toRead_);
+}
+
 Status Loader::readMeshes() {
+    toRead_ = elementsToRead();
+    budgetBefore_ = budget_;
     for (const PlacedNode& placed : nodes_) {
         const tinygltf::Node& node = model_.nodes[placed.index];
         if (node.mesh < 0) continue;
@@ -117,6 +180,9 @@ Status Loader::readPart(const tinygltf::Mesh& mesh, const PlacedNode& placed, st
         if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) >= model_.materials.size())
             return fail(what + " names material " + std::to_string(primitive.material) + ", which is not there");
         const int material = primitive.material >= 0 ? primitive.material : defaultMaterial();
+        if (budget_ < kElementsPerVisit) return fail("the file unfolds to more meshes than one of its size may");
+        budget_ -= kElementsPerVisit;
+        if (auto ok = reachedMeshes(); !ok) return ok;
         const UvSource uv = primitive.material >= 0 ? uvSource(model_.materials[primitive.material]) : UvSource{};
         const auto soup = readPrimitive(model_, primitive, uv, budget_, what);
         if (!soup) return tl::unexpected(soup.error());
@@ -124,9 +190,9 @@ Status Loader::readPart(const tinygltf::Mesh& mesh, const PlacedNode& placed, st
             warn(what + " has no triangles and is not shown");
             continue;
         }
-        bool isFinite = true;
-        withoutArea += bake(*soup, placed.world, parts[material], isFinite);
-        if (!isFinite) return fail(what + " leaves the range of 32-bit numbers when its node places it");
+        bool isNear = true;
+        withoutArea += bake(*soup, placed.world, parts[material], isNear);
+        if (!isNear) return fail(what + " lies beyond 1e8 m when its node places it");
     }
     if (withoutArea > 0)
         warn("mesh \"" + mesh.name + "\": " + std::to_string(withoutArea) + " triangles without area were left out");
@@ -136,9 +202,12 @@ Status Loader::readPart(const tinygltf::Mesh& mesh, const PlacedNode& placed, st
 Status Loader::addObject(std::string name, int material, Part part) {
     const bool caster = scene_.materials[material].caster;
     const std::string what = "\"" + name + "\"";
+    if (geometry_->objects.size() >= kMaxObjects) return fail("the file has more than " + std::to_string(kMaxObjects) + " objects");
+    if (auto ok = reachedMeshes(); !ok) return ok;
     if (caster) {
         if (const std::size_t dropped = dropDuplicates(part); dropped > 0)
             warn(what + ": " + std::to_string(dropped) + " triangles that are there twice were left out");
+        if (auto ok = reachedMeshes(); !ok) return ok;
         const Topology topology = examine(part);
         if (topology.crowdedEdges > 0)
             warn(what + " has " + std::to_string(topology.crowdedEdges) +
@@ -159,9 +228,8 @@ Status Loader::addObject(std::string name, int material, Part part) {
     object.name = std::move(name);
     object.material = material;
     append(std::move(object), part.vertices, part.indices);
-    int casters = 0;
-    for (const Object& o : geometry_->objects) casters += scene_.materials[o.material].caster;
-    if (casters > limits_.casters)
+    casters_ += caster;
+    if (casters_ > limits_.casters)
         return fail("the file has more than " + std::to_string(limits_.casters) +
                     " transmissive objects; join those of one material");
     return {};
@@ -208,10 +276,12 @@ Status Loader::readLights() {
         const double index = numberOr(member(*link, "light"), -1.0);
         if (!(index >= 0.0 && index < static_cast<double>(model_.lights.size())))
             return fail("node " + std::to_string(placed.index) + " names a light that is not there");
+        if (scene_.lights.size() >= kMaxLights) return fail("the file places more than " + std::to_string(kMaxLights) + " lights");
         const tinygltf::Light& source = model_.lights[static_cast<std::size_t>(index)];
         const std::string name = lightNames_.unique(source.name, "light", scene_.lights.size());
         auto light = readLight(source, placed.world, textures_, name);
         if (!light) return tl::unexpected(light.error());
+        if (!near(light->position)) return fail("light \"" + name + "\" lies beyond 1e9 m");
         if (light->type == LightType::Point)
             if (const glm::vec3 away = subject().centre() - light->position; glm::length(away) > 0.0f)
                 light->direction = glm::normalize(away);
@@ -226,7 +296,11 @@ void Loader::readCameras() {
         if (node.camera < 0 || static_cast<std::size_t>(node.camera) >= model_.cameras.size()) continue;
         const tinygltf::Camera& source = model_.cameras[node.camera];
         const std::string name = cameraNames_.unique(source.name, "camera", scene_.cameras.size());
-        scene_.cameras.push_back(readCamera(source, node, placed.world, subject(), name, scene_.warnings));
+        Camera camera = readCamera(source, node, placed.world, subject(), name, scene_.warnings);
+        if (near(camera.eye) && near(camera.target) && camera.eye != camera.target && scene_.cameras.size() < kMaxCameras)
+            scene_.cameras.push_back(std::move(camera));
+        else
+            warn("camera \"" + name + "\" lies beyond 1e9 m, or is one of too many, and is left out");
     }
 }
 
@@ -286,11 +360,20 @@ Status Loader::readSceneExtras() {
 }  // namespace
 
 tl::expected<Scene, LoadError> loadGlb(std::span<const std::byte> glb, const std::string& name,
-                                       const LoadLimits& limits) {
-    if (auto ok = checkContainer(glb, limits); !ok) return tl::unexpected(ok.error());
-    auto file = parseGltf(glb);
-    if (!file) return tl::unexpected(file.error());
-    return Loader(std::move(*file), limits).load(name);
+                                       const LoadLimits& limits, const LoadObserver& observer) {
+    const auto read = [&]() -> tl::expected<Scene, LoadError> {
+        if (auto ok = checkContainer(glb, limits); !ok) return tl::unexpected(ok.error());
+        auto file = parseGltf(glb);
+        if (!file) return tl::unexpected(file.error());
+        return Loader(std::move(*file), glb.size(), limits, observer).load(name);
+    };
+    auto scene = read();
+    if (!scene) {  // whatever the names that it tells hold, one line that can be shown
+        cutText(scene.error().message, kMaxErrorBytes);
+        for (char& c : scene.error().message)
+            if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    }
+    return scene;
 }
 
 }  // namespace caustream::scene

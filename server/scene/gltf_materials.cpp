@@ -10,8 +10,8 @@ namespace caustream::scene {
 namespace {
 
 constexpr std::size_t kMaxTableEntries = 1024;
+constexpr double kMaxEmission = 1e6;  // as the colours of a state document
 constexpr double kMinIndex = 1.0, kMaxIndex = 10.0;  // of refraction, over the band
-constexpr std::size_t kMaxNameBytes = 64;
 constexpr double kMostPriority = 1000.0;  // and least: a whole number that any type holds
 // Of GGX facet normals half lie within atan(roughness^2) of the surface's: 2.3 degrees here. Rougher metal blurs what it
 // throws over more than the caustics that a mirror would draw.
@@ -127,17 +127,9 @@ tl::expected<int, LoadError> TextureTable::use(int gltfTexture, const std::strin
 }
 
 std::string NameTable::unique(const std::string& name, const std::string& kind, std::size_t index) {
-    std::string base = name;
-    if (base.size() > kMaxNameBytes) {
-        std::size_t end = kMaxNameBytes;
-        while (end > 0 && (static_cast<unsigned char>(base[end]) & 0xC0) == 0x80) --end;  // whole UTF-8 characters
-        base.resize(end);
-    }
-    std::string candidate = !base.empty() ? base : index == 0 ? kind : kind + "-" + std::to_string(index);
-    const std::string stem = base.empty() ? kind : base;
-    while (std::find(taken_.begin(), taken_.end(), candidate) != taken_.end())
-        candidate = stem + "-" + std::to_string(index++);
-    taken_.push_back(candidate);
+    std::string candidate = !name.empty() ? name : index == 0 ? kind : kind + "-" + std::to_string(index);
+    const std::string stem = name.empty() ? kind : name;
+    while (!taken_.insert(candidate).second) candidate = stem + "-" + std::to_string(index++);
     return candidate;
 }
 
@@ -178,7 +170,8 @@ tl::expected<Material, LoadError> readMaterial(const tinygltf::Material& source,
     }
     material.emissive = glm::max(vector3(source.emissiveFactor, glm::vec3(0.0f)), glm::vec3(0.0f));
     if (const auto* strength = extension(source.extensions, "KHR_materials_emissive_strength"))
-        material.emissive *= static_cast<float>(std::max(0.0, numberOr(member(*strength, "emissiveStrength"), 1.0)));
+        material.emissive *= static_cast<float>(std::clamp(numberOr(member(*strength, "emissiveStrength"), 1.0), 0.0, kMaxEmission));
+    material.emissive = glm::min(material.emissive, glm::vec3(kMaxEmission));
 
     // glass
     const auto* transmission = extension(source.extensions, "KHR_materials_transmission");

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <tl/expected.hpp>
+#include <unordered_set>
 #include <vector>
 
 #include "scene/gltf_file.h"
@@ -33,7 +34,7 @@ class NameTable {
     std::string unique(const std::string& name, const std::string& kind, std::size_t index);
 
  private:
-    std::vector<std::string> taken_;
+    std::unordered_set<std::string> taken_;
 };
 
 // Where a material's base-colour texture takes its coordinates: the attribute set, and KHR_texture_transform.

@@ -2,6 +2,7 @@
 
 #include <png.h>
 #include <turbojpeg.h>
+#include <algorithm>
 #include <memory>
 
 namespace caustream::scene {
@@ -53,6 +54,8 @@ tl::expected<Texture, LoadError> decodeJpeg(std::span<const std::uint8_t> bytes,
 
 tl::expected<Texture, LoadError> decodeImage(std::span<const std::uint8_t> bytes, std::size_t maxTexels,
                                              const std::string& what) {
+    constexpr std::size_t kTexelsFree = 1u << 20, kTexelsPerByte = 1024;  // deflate packs 1032 equal bytes into one
+    maxTexels = std::min(maxTexels, kTexelsFree + kTexelsPerByte * bytes.size());
     if (bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0) return decodePng(bytes, maxTexels, what);
     return decodeJpeg(bytes, maxTexels, what);
 }

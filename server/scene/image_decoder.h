@@ -10,7 +10,8 @@
 
 namespace caustream::scene {
 
-// At most `maxTexels`. Errors name `what`.
+// At most `maxTexels`, and 1024 for each byte of the file above the first million: no more than any picture that is not
+// made to swell. Errors name `what`.
 tl::expected<Texture, LoadError> decodeImage(std::span<const std::uint8_t> bytes, std::size_t maxTexels,
                                              const std::string& what);
 

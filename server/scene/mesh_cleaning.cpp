@@ -14,8 +14,15 @@ namespace caustream::scene {
 
 namespace {
 
-bool finiteVec(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+constexpr float kFarM = 1e8f;
+
+bool within(const glm::vec3& v) {
+    return std::abs(v.x) <= kFarM && std::abs(v.y) <= kFarM && std::abs(v.z) <= kFarM;
+}
+
+glm::vec2 usableUv(const glm::dvec2& uv) {
+    const glm::vec2 rounded(uv);
+    return std::isfinite(rounded.x) && std::isfinite(rounded.y) ? rounded : glm::vec2(0.0f);
 }
 
 // Inverse transpose times the determinant's square: the direction of normals under `m`, also when m has no inverse.
@@ -54,17 +61,17 @@ std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, bool& finite) {
+std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, bool& isNear) {
     const glm::dmat3 linear(world);
     const glm::dmat3 normals = normalMatrix(linear);
     const bool mirrored = glm::determinant(linear) < 0.0;
     std::vector<glm::vec3> positions(soup.positions.size());
-    finite = true;
+    isNear = true;
     for (std::size_t i = 0; i < positions.size(); ++i) {
         positions[i] = glm::vec3(world * glm::dvec4(soup.positions[i], 1.0));
-        finite = finite && finiteVec(positions[i]);
+        isNear = isNear && within(positions[i]);
     }
-    if (!finite) return 0;
+    if (!isNear) return 0;
 
     constexpr std::uint32_t kNone = ~0u;
     std::vector<std::uint32_t> shared(soup.positions.size(),
@@ -89,7 +96,7 @@ std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, 
             const auto index = static_cast<std::uint32_t>(part.vertices.size());
             if (usable) shared[i] = index;
             part.vertices.push_back({positions[i], glm::vec3(usable ? given : flat),
-                                     soup.uvs.empty() ? glm::vec2(0.0f) : glm::vec2(soup.uvs[i])});
+                                     soup.uvs.empty() ? glm::vec2(0.0f) : usableUv(soup.uvs[i])});
             part.indices.push_back(index);
         }
     }

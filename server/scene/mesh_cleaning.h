@@ -16,9 +16,9 @@ struct Part {  // of one object; indices into its own vertices
 };
 
 // Appends `soup`, moved by `world`, to `part`: a mirror keeps counter-clockwise outside, triangles without area are
-// left out (their number is returned), vertices without a usable normal get their triangle's. False in `finite` when a
-// position overflows.
-std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, bool& finite);
+// left out (their number is returned), vertices without a usable normal get their triangle's. False in `isNear` when a
+// position lies beyond 1e8 m: a light and a camera placed around it still have coordinates that a state document may hold.
+std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, bool& isNear);
 
 struct Topology {
     bool closed = false;           // every edge has exactly one partner that runs the other way

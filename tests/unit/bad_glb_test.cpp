@@ -183,7 +183,7 @@ TEST(BadGlb, PositionsThatAreNoNumbers) {
         std::memcpy(glb.binary.data() + 16, &bad, 4);
         expectError(glb, "NaN or infinity");
     }
-    expectError(edited([](json& root) { root["nodes"][0]["scale"] = {1e39, 1e39, 1e39}; }), "range of 32-bit");
+    expectError(edited([](json& root) { root["nodes"][0]["scale"] = {1e39, 1e39, 1e39}; }), "beyond 1e8 m");
 }
 
 TEST(BadGlb, NormalsThatAreNoNumbersBecomeFlat) {
