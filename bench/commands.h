@@ -15,7 +15,7 @@ void addPeers(CLI::App& app);        // POV-Ray beside traced transport
 void addReference(CLI::App& app);     // exact maps from the CPU
 void addSegments(CLI::App& app);    // what a ray segment of traced transport costs
 void addStability(CLI::App& app);     // stiff, extreme and random scenes
-void addStream(CLI::App& app);        // what the socket adds
+void addStream(CLI::App& app);        // how frames reach their viewers
 void addTiles(CLI::App& app);         // what changes from frame to frame
 
 }  // namespace caustream::bench

@@ -7,6 +7,7 @@
 #include <turbojpeg.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <stdexcept>
@@ -90,6 +91,7 @@ bool RawClient::fill(int ms) {
     if (size > 0) {
         received_.append(buffer.data(), static_cast<std::size_t>(size));
     }
+    ended_ = size <= 0;
     return size > 0;
 }
 
@@ -120,8 +122,8 @@ Message RawClient::next(int ms) {
     const auto last = Clock::now() + std::chrono::milliseconds(ms);
     const auto have = [&](std::size_t size) {
         while (received_.size() < size) {
-            const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(last - Clock::now()).count();
-            if (left <= 0 || !fill(static_cast<int>(left))) {
+            const auto left = std::chrono::ceil<std::chrono::milliseconds>(last - Clock::now()).count();
+            if (!fill(static_cast<int>(std::max<std::int64_t>(left, 0)))) {
                 return false;
             }
         }
@@ -165,8 +167,8 @@ Message RawClient::next(int ms) {
         }
     }
     if (message.kind == Message::Kind::Silence) {
-        if (Clock::now() < last) {
-            message.kind = Message::Kind::Close;  // end of file
+        if (ended_) {
+            message.kind = Message::Kind::Close;
         }
     } else if (message.kind == Message::Kind::Binary) {
         message.bytes.assign(payload.begin(), payload.end());

@@ -72,6 +72,7 @@ class RawClient {
     bool fill(int ms);
 
     int socket_ = -1;
+    bool ended_ = false;  // nothing more comes
     std::string received_;
     std::deque<Message> frames_;  // that came while a text was waited for
     std::uint32_t nextId_ = 1;

@@ -1,22 +1,15 @@
 #include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <vector>
 
-#include "bench/commands.h"
 #include "bench/statistics.h"
+#include "bench/stream/scenarios.h"
+#include "bench/stream/server_child.h"
 #include "client/connection/connection.h"
 #include "error.h"
 
 namespace caustream::bench {
-
 namespace {
 
-struct StreamOptions {
-    std::string url = "http://127.0.0.1:9720";
-    std::string scene = "sphere";
-    int frames = 60;
-};
+constexpr double kMostAddedMs = 4;
 
 // Waits for the frame that shows input `seq` or a later one; frames before it are acknowledged and dropped.
 connection::Frame frameOf(connection::Connection& connection, std::uint32_t seq) {
@@ -34,12 +27,11 @@ connection::Frame frameOf(connection::Connection& connection, std::uint32_t seq)
     }
     throw Error("no frame within 20 s; is the server busy with other viewers?");
 }
-// Frames of a moving light through the socket: what encoding, sending and decoding add to rendering.
-void streamTime(const StreamOptions& options) {
-    const auto address = connection::parseAddress(options.url);
-    if (!address) throw Error(address.error());
-    connection::Connection connection({.address = *address, .clientName = "caustream-bench"});
-    const auto set = connection.update({{"scene", {"builtin", options.scene}},
+
+// Frames of a moving light, one after the other.
+void measure(Report& report, const connection::Address& address, const std::string& scene, int frames, bool judged) {
+    connection::Connection connection({.address = address, .clientName = "caustream-bench"});
+    const auto set = connection.update({{"scene", {"builtin", scene}},
                                         {"transport", {{"photon_grid", 180}, {"wavelengths", 7}, {"map_size", 512}}},
                                         {"stream", {{"width", 512}, {"height", 512}, {"max_fps", 240}}}});
     if (!set) throw Error(set.error().message);
@@ -47,8 +39,8 @@ void streamTime(const StreamOptions& options) {
     frameOf(connection, 0);
 
     std::vector<double> total, render, encode, decode, added, hold;
-    const int warmUp = std::max(2, options.frames / 6);
-    for (int i = 0; i < options.frames + warmUp; ++i) {
+    const int warmUp = std::max(2, frames / 6);
+    for (int i = 0; i < frames + warmUp; ++i) {
         const double x = 0.35 + 1e-3 * i;
         const std::uint64_t start = connection::nowUs();
         const auto seq = connection.input({{"lights", {{"key", {{"position", {x, 1.9, 0.3}}}}}}});
@@ -61,27 +53,32 @@ void streamTime(const StreamOptions& options) {
         encode.push_back(1e-3 * frame.header.encodeUs);
         hold.push_back(1e-3 * frame.header.holdUs);
         decode.push_back(1e-3 * frame.decodeUs);
-        added.push_back(ms - 1e-3 * frame.header.renderUs);
+        added.push_back(ms - 1e-3 * (frame.header.renderUs + frame.header.encodeUs));
     }
-    std::printf("scene %s over %s, 512 x 512, 7 wavelengths, medians of %d, calibration %.1f ms\n", options.scene.c_str(),
-                options.url.c_str(), options.frames, calibrationMs());
-    std::printf("input to decoded frame   %.2f ms\n", median(total));
-    std::printf("  render                 %.2f ms\n", median(render));
-    std::printf("  encode                 %.2f ms\n", median(encode));
-    std::printf("  held for the socket    %.2f ms\n", median(hold));
-    std::printf("  decode                 %.2f ms\n", median(decode));
-    std::printf("added to rendering       %.2f ms\n", median(added));
+    report.note("scene " + scene + ", 512 x 512, 7 wavelengths, medians of " + std::to_string(frames) + " moves of the light, each after the picture of the one before");
+    report.shown("input to decoded frame", median(total), "ms");
+    report.shown("rendering", median(render), "ms");
+    report.shown("encoding", median(encode), "ms");
+    report.shown("waiting for the renderer", median(hold), "ms");
+    report.shown("decoding", median(decode), "ms");
+    if (judged) report.atMost("beyond rendering and encoding", median(added), kMostAddedMs, "ms");
+    else report.shown("beyond rendering and encoding", median(added), "ms");
+    report.shown("calibration loop", calibrationMs(), "ms");
 }
 
 }  // namespace
 
-void addStream(CLI::App& app) {
-    const auto options = std::make_shared<StreamOptions>();
-    CLI::App* command = app.add_subcommand("stream", "what the socket adds, with a server that runs already");
-    command->add_option("--url", options->url, "the server")->capture_default_str();
-    command->add_option("--scene", options->scene, "a built-in scene")->capture_default_str();
-    command->add_option("--frames", options->frames, "frames counted")->check(CLI::Range(3, 10000))->capture_default_str();
-    command->callback([options] { streamTime(*options); });
+Report latency(const ScenarioOptions& options) {
+    const ServerChild server(options.server, {"--gpu", options.gpu});
+    Report report("latency");
+    measure(report, *connection::parseAddress(server.url()), "sphere", options.frames, true);
+    return report;
+}
+
+Report added(const connection::Address& address, const std::string& scene, int frames) {
+    Report report("added");
+    measure(report, address, scene, frames, false);
+    return report;
 }
 
 }  // namespace caustream::bench
