@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "embedded/web.h"
+#include "gl/names.h"
 #include "log.h"
 #include "session/clock.h"
 #include "session/random_id.h"
@@ -180,6 +181,7 @@ std::string Service::metrics() const {
              << name << labels << ' ' << value << '\n';
     };
     metric("gpu_info", "gauge", "The renderer in use.", 1, "{renderer=\"" + gpu + "\"}");
+    metric("gl_objects", "gauge", "Textures, buffers, programs and the like that the renderer holds.", gl::liveObjects.load());
     metric("connections", "gauge", "Open WebSockets.", viewers_.size());
     metric("sessions", "gauge", "Viewers that said hello.", desk_.sessions);
     metric("frames_rendered_total", "counter", "Frames drawn.", renderer_->frames());

@@ -2,26 +2,33 @@
 #pragma once
 #include <epoxy/gl.h>
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
 
 namespace caustream::gl {
 
+// How many GL objects there are, of every context together: one that only grows is a leak. Any thread may read it.
+inline std::atomic<std::int64_t> liveObjects{0};
+
 // Owns one GL name; Delete frees it.
 template <void (*Delete)(GLuint)>
 class GlName {
    public:
     GlName() = default;
-    explicit GlName(GLuint name) : name_(name) {}
+    explicit GlName(GLuint name) : name_(name) { liveObjects += name_ != 0; }
     GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
     GlName& operator=(GlName&& other) noexcept {
         std::swap(name_, other.name_);
         return *this;
     }
     ~GlName() {
-        if (name_) Delete(name_);
+        if (!name_) return;
+        Delete(name_);
+        --liveObjects;
     }
     GLuint get() const { return name_; }
     explicit operator bool() const { return name_ != 0; }
