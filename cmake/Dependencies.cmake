@@ -14,6 +14,7 @@ pkg_check_modules(websockets REQUIRED IMPORTED_TARGET libwebsockets)
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(png REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(tinygltf REQUIRED IMPORTED_TARGET tinygltf)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 
 # Warnings every target of ours compiles with; the presets make them errors.
 add_library(caustream_options INTERFACE)

@@ -24,7 +24,7 @@ inline constexpr Choice<TransportMode> kTransportModes[] = {{"auto", TransportMo
 inline constexpr std::string_view kContinuousName = "continuous";
 inline constexpr Choice<bool> kBands[] = {{"rgb", false}, {"wavelengths", true}};
 inline constexpr Choice<Encoding> kEncodings[] = {
-    {"jpeg", Encoding::Jpeg}, {"png", Encoding::Png}, {"raw", Encoding::Raw}};
+    {"jpeg", Encoding::Jpeg}, {"png", Encoding::Png}, {"raw", Encoding::Raw}, {"zstd", Encoding::Zstd}};
 inline constexpr Choice<Sample> kSamples[] = {{"u8", Sample::U8}, {"f16", Sample::F16}, {"f32", Sample::F32}};
 inline constexpr Choice<Layout> kLayouts[] = {
     {"interleaved", Layout::Interleaved}, {"planar", Layout::Planar}, {"planar+shuffle", Layout::PlanarShuffle}};

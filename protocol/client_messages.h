@@ -27,7 +27,7 @@ struct Hello {
     std::uint32_t id = 0;
     std::optional<std::string> token;
     std::string clientName, clientVersion;
-    std::vector<std::string> caps;  // "jpeg" "png" "raw" "f16" "f32"; unknown ones are ignored
+    std::vector<std::string> caps;  // "jpeg" "png" "raw" "zstd" "shuffle" "f16" "f32"; unknown ones are ignored
     std::uint32_t maxInflight = 2;  // 1..8 frames sent and not acknowledged
     bool strict = false;            // unknown fields are errors
     Role role = Role::Control;

@@ -135,9 +135,9 @@ void checkStream(const Item& item, const StreamState& stream) {
     const auto contradict = [&](const char* field, const char* message) {
         Item(&item.json(), &item, field, 0, item.decoding()).fail(ErrorCode::BadRequest, message);
     };
-    const bool isImage = stream.encoding != Encoding::Raw;
+    const bool isImage = stream.encoding == Encoding::Jpeg || stream.encoding == Encoding::Png;
     if (stream.target == Target::Spectral && isImage)
-        contradict("encoding", "the spectral map has only \"raw\"");
+        contradict("encoding", "the spectral map has only \"raw\" and \"zstd\"");
     else if (isImage && stream.sample != Sample::U8)
         contradict("sample", "\"jpeg\" and \"png\" have only \"u8\"");
     else if (stream.target == Target::Spectral && stream.sample == Sample::U8)

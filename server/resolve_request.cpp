@@ -32,9 +32,6 @@ std::string passList() {
 
 // What the protocol lets through and this server does not have.
 tl::expected<void, protocol::DecodeError> checkStream(const protocol::StreamState& stream) {
-    if (stream.encoding == Encoding::Zstd) {
-        return unsupported("zstd is not built in; ask for raw", "stream.encoding");
-    }
     if (stream.target == Target::Pass && std::ranges::find(render::passNames(), stream.pass) == render::passNames().end()) {
         return unsupported("there is no pass '" + stream.pass + "' to show; there are: " + passList(), "stream.target");
     }
@@ -148,6 +145,7 @@ protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, En
     info.pass = view.stream.pass;
     info.encoding = encoding;
     info.sample = sampleOf(frame);
+    info.layout = stream::layoutOf(encoding, info.sample);
     const stream::Ladder::Size size = shownSize(view, frame);
     info.width = static_cast<std::uint32_t>(size.width);
     info.height = static_cast<std::uint32_t>(size.height);
@@ -166,6 +164,7 @@ protocol::FrameHeader frameHeader(const View& view, const render::Frame& frame, 
     header.encoding = encode.encoding;
     header.level = static_cast<std::uint8_t>(level);
     header.sample = sampleOf(frame);
+    header.layout = stream::layoutOf(header.encoding, header.sample);
     header.width = static_cast<std::uint16_t>(frame.width);
     header.height = static_cast<std::uint16_t>(frame.height);
     const stream::Ladder::Size size = shownSize(view, frame);

@@ -183,7 +183,7 @@ void Viewer::welcome(std::uint32_t id, std::vector<std::string> missingAssets) {
     message.resumed = resumed_;
     message.rev = session_->rev();
     message.state = session_->document();
-    message.caps = {"jpeg", "png", "raw", "f16", "f32", "resume", "follow", "ladder"};
+    message.caps = {"jpeg", "png", "raw", "zstd", "shuffle", "f16", "f32", "resume", "follow", "ladder"};
     for (const scene::BuiltinScene& builtin : scene::builtinScenes()) {
         message.scenes.emplace_back(builtin.name);
     }

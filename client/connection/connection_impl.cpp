@@ -57,7 +57,7 @@ void Connection::Impl::hello() {
     helloId = nextId();
     protocol::Hello message{
         .id = helloId, .token = options.token, .clientName = options.clientName, .clientVersion = "0.1.0"};
-    message.caps = {"jpeg", "png", "raw", "f16", "f32"};
+    message.caps = {"jpeg", "png", "raw", "zstd", "shuffle", "f16", "f32"};
     message.maxInflight = options.maxInflight;
     message.strict = options.strict;
     if (!options.follow.empty()) {

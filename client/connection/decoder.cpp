@@ -2,6 +2,7 @@
 
 #include <png.h>
 #include <turbojpeg.h>
+#include <zstd.h>
 
 #include <cstring>
 
@@ -56,11 +57,22 @@ Result decodePng(const FrameHeader& header, std::span<const std::uint8_t> payloa
     return image;
 }
 
+// The first bytes of all samples, band after band, then the second bytes, and so on.
+Image unshuffled(Image image, std::span<const std::uint8_t> payload, std::size_t size) {
+    image.data.resize(payload.size());
+    const std::size_t bands = image.bands, samples = image.samples(), texels = samples / bands;
+    for (std::size_t byte = 0; byte < size; ++byte)
+        for (std::size_t band = 0; band < bands; ++band)
+            for (std::size_t i = 0; i < texels; ++i)
+                image.data[(i * bands + band) * size + byte] = payload[byte * samples + band * texels + i];
+    return image;
+}
+
 Result decodeRaw(const FrameHeader& header, std::span<const std::uint8_t> payload) {
     Image image = emptyImage(header);
     const std::size_t size = protocol::sampleBytes(header.sample), bands = header.bands;
     if (payload.size() != image.samples() * size) return refused("the payload is not width x height x bands samples");
-    if (header.layout == Layout::PlanarShuffle) return refused("shuffled bytes were not asked for");
+    if (header.layout == Layout::PlanarShuffle) return unshuffled(std::move(image), payload, size);
     if (header.layout == Layout::Interleaved || bands == 1) {
         image.data.assign(payload.begin(), payload.end());
         return image;
@@ -71,6 +83,18 @@ Result decodeRaw(const FrameHeader& header, std::span<const std::uint8_t> payloa
         for (std::size_t i = 0; i < texels; ++i)
             std::memcpy(&image.data[(i * bands + band) * size], &payload[(band * texels + i) * size], size);
     return image;
+}
+
+Result decodeZstd(const FrameHeader& header, std::span<const std::uint8_t> payload) {
+    const std::size_t bytes = emptyImage(header).samples() * protocol::sampleBytes(header.sample);
+    if (bytes > protocol::Limits{}.framePayloadBytes) return refused("its samples are more than a frame may have");
+    if (ZSTD_getFrameContentSize(payload.data(), payload.size()) != bytes)
+        return refused("the zstd frame is not of width x height x bands samples");
+    std::vector<std::uint8_t> samples(bytes);
+    const std::size_t got = ZSTD_decompress(samples.data(), samples.size(), payload.data(), payload.size());
+    if (ZSTD_isError(got)) return refused(ZSTD_getErrorName(got));
+    if (got != bytes) return refused("the zstd frame is not of width x height x bands samples");
+    return decodeRaw(header, samples);
 }
 
 }  // namespace
@@ -87,7 +111,7 @@ Result Decoder::decode(const FrameHeader& header, std::span<const std::uint8_t> 
         case Encoding::Raw:
             return decodeRaw(header, payload);
         case Encoding::Zstd:
-            break;
+            return decodeZstd(header, payload);
     }
     return refused("its encoding was not asked for");
 }

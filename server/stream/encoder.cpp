@@ -2,11 +2,13 @@
 
 #include <png.h>
 #include <turbojpeg.h>
+#include <zstd.h>
 
 #include <array>
 #include <bit>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "error.h"
 
@@ -18,7 +20,33 @@ using protocol::Encoding;
 using protocol::kFrameHeaderBytes;
 using render::PixelLayout;
 
+namespace {
+
+constexpr int kZstdLevel = 1;   // its fastest: noise compresses no better for more time
+
+// Interleaved samples -> the first bytes of all of them, band after band, then the second bytes, and so on: what samples
+// have in common, sign and exponent, comes together.
+std::vector<std::uint8_t> shuffle(const render::Frame& frame) {
+    const std::size_t bands = static_cast<std::size_t>(frame.bands), bytes = frame.sample == render::Sample::F16 ? 2 : 4;
+    const std::size_t samples = frame.pixels.size() / bytes, texels = samples / bands;
+    std::vector<std::uint8_t> out(frame.pixels.size());
+    for (std::size_t byte = 0; byte < bytes; ++byte) {
+        for (std::size_t band = 0; band < bands; ++band) {
+            std::uint8_t* to = &out[byte * samples + band * texels];
+            for (std::size_t i = 0; i < texels; ++i) to[i] = frame.pixels[(i * bands + band) * bytes + byte];
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+protocol::Layout layoutOf(Encoding encoding, protocol::Sample sample) {
+    return encoding == Encoding::Zstd && sample != protocol::Sample::U8 ? protocol::Layout::PlanarShuffle : protocol::Layout::Interleaved;
+}
+
 void Encoder::Free::operator()(void* handle) const { tjDestroy(handle); }
+void Encoder::FreeZstd::operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 
 Encoder::Encoder() : compressor_(tjInitCompress()) {
     if (!compressor_) {
@@ -30,7 +58,7 @@ Encoder::~Encoder() = default;
 
 WireBuffer Encoder::encode(const render::Frame& frame, const EncodeSettings& settings) {
     const bool picture = frame.sample == render::Sample::U8 && frame.bands == 3;
-    if (settings.encoding != Encoding::Raw && !picture) {
+    if ((settings.encoding == Encoding::Jpeg || settings.encoding == Encoding::Png) && !picture) {
         throw Error("encoder: JPEG and PNG hold 8-bit RGB only; ask for encoding raw");
     }
     if (settings.encoding == Encoding::Jpeg) return jpeg(frame, settings);
@@ -39,11 +67,11 @@ WireBuffer Encoder::encode(const render::Frame& frame, const EncodeSettings& set
     }
     switch (settings.encoding) {
         case Encoding::Png: return png(frame);
-        case Encoding::Raw: return raw(frame);
-        case Encoding::Jpeg:
-        case Encoding::Zstd: break;
+        case Encoding::Zstd: return zstd(frame);
+        case Encoding::Raw:
+        case Encoding::Jpeg: break;
     }
-    throw Error("encoder: zstd is not built in; ask for encoding raw");
+    return raw(frame);
 }
 
 WireBuffer Encoder::jpeg(const render::Frame& frame, const EncodeSettings& settings) {
@@ -96,6 +124,23 @@ WireBuffer Encoder::png(const render::Frame& frame) {
 WireBuffer Encoder::raw(const render::Frame& frame) {
     WireBuffer buffer(kFrameHeaderBytes + frame.pixels.size());
     std::memcpy(buffer.data() + kFrameHeaderBytes, frame.pixels.data(), frame.pixels.size());
+    return buffer;
+}
+
+WireBuffer Encoder::zstd(const render::Frame& frame) {
+    if (!zstd_) {
+        zstd_.reset(ZSTD_createCCtx());
+        if (!zstd_) throw Error("zstd encoder: no memory; try encoding raw");
+    }
+    const std::vector<std::uint8_t> shuffled = frame.sample == render::Sample::U8 ? std::vector<std::uint8_t>{} : shuffle(frame);
+    const std::vector<std::uint8_t>& samples = shuffled.empty() ? frame.pixels : shuffled;
+    WireBuffer buffer(kFrameHeaderBytes + ZSTD_compressBound(samples.size()));
+    const std::size_t size = ZSTD_compressCCtx(zstd_.get(), buffer.data() + kFrameHeaderBytes, buffer.size() - kFrameHeaderBytes,
+                                               samples.data(), samples.size(), kZstdLevel);
+    if (ZSTD_isError(size)) {
+        throw Error(std::string("zstd encoder: ") + ZSTD_getErrorName(size) + "; try encoding raw");
+    }
+    buffer.shrink(kFrameHeaderBytes + size);
     return buffer;
 }
 

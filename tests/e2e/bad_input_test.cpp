@@ -122,7 +122,8 @@ TEST_F(BadInput, PatchesThatDoNotHold) {
         {R"({"stream":{"target":"spectral","encoding":"jpeg"}})", "bad_request", "stream.encoding"},
         {R"({"stream":{"encoding":"jpeg","sample":"f32"}})", "bad_request", "stream.sample"},
         {R"({"stream":{"encoding":"raw","sample":"f16"}})", "unsupported", "stream.sample"},
-        {R"({"stream":{"encoding":"zstd"}})", "unsupported", "stream.encoding"},
+        {R"({"stream":{"encoding":"webp"}})", "unsupported", "stream.encoding"},
+        {R"({"stream":{"target":"spectral","encoding":"zstd"}})", "bad_request", "stream.sample"},
         {R"({"colour":"blue"})", "unknown_field", "colour"},
         // One bad field among good ones: the good ones are not applied either.
         {R"({"camera":{"fov_y_deg":33},"environment":{"color":[1,2]}})", "", "environment.color"},

@@ -1,6 +1,7 @@
 // What a viewer sees: pictures and maps of the scene it asked for, when it asked, and no more than it can take.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -126,6 +127,30 @@ TEST_F(Frames, SpectralMapArrivesAsFloats) {
     std::memcpy(samples.data(), picture.payload.data(), picture.payload.size());
     EXPECT_TRUE(std::ranges::all_of(samples, [](float v) { return std::isfinite(v) && v >= 0.0f; }));
     EXPECT_GT(*std::ranges::max_element(samples), 0.1f) << "light came through";
+}
+
+TEST_F(Frames, ZstdIsRawInFewerBytes) {
+    RawClient viewer(server_.port());
+    const Json welcome = viewer.hello({{"caps", {"raw", "zstd", "shuffle", "f16"}}});
+    EXPECT_THAT(welcome["caps"], testing::IsSupersetOf({"zstd", "shuffle"}));
+    viewer.update(kSmall);
+    viewer.update({{"stream", {{"target", "spectral"}, {"encoding", "raw"}, {"sample", "f16"}}}});
+    const Picture raw = viewer.requestFrame();
+    ASSERT_EQ(viewer.update({{"stream", {{"encoding", "zstd"}}}})["op"], "ok");
+    const Picture packed = viewer.requestFrame();
+    EXPECT_EQ(packed.header.encoding, protocol::Encoding::Zstd);
+    EXPECT_EQ(packed.header.layout, protocol::Layout::PlanarShuffle);
+    EXPECT_EQ(viewer.infos.back()["layout"], "planar+shuffle");
+    EXPECT_LT(packed.payload.size(), raw.payload.size());
+    std::vector<std::uint8_t> shuffled(packed.header.rawLen);
+    ASSERT_EQ(ZSTD_decompress(shuffled.data(), shuffled.size(), packed.payload.data(), packed.payload.size()), raw.payload.size());
+    const std::size_t samples = raw.payload.size() / 2, texels = samples / 3;
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < raw.payload.size(); ++i) {
+        const std::size_t byte = i % 2, band = i / 2 % 3, texel = i / 6;
+        wrong += raw.payload[i] != shuffled[byte * samples + band * texels + texel];
+    }
+    EXPECT_EQ(wrong, 0u);
 }
 
 TEST_F(Frames, AMovedLightBeginsANewEpochOfTheMap) {

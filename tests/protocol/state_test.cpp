@@ -100,7 +100,7 @@ TEST(State, OnlyKnownChoicesAreTaken) {
              {R"({"scene":["file","/etc/passwd"]})", "scene[0]"},
              {R"({"transport":{"mode":"bidirectional"}})", "transport.mode"},
              {R"({"transport":{"wavelengths":"endless"}})", "transport.wavelengths"},
-             {R"({"stream":{"encoding":"zstd"}})", "stream.encoding"},
+             {R"({"stream":{"encoding":"webp"}})", "stream.encoding"},
              {R"({"stream":{"sample":"u16"}})", "stream.sample"},
              {R"({"stream":{"bands":"cmyk"}})", "stream.bands"},
              {R"({"stream":{"quality":["best"]}})", "stream.quality[0]"},

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <turbojpeg.h>
+#include <zstd.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
+#include "client/connection/decoder.h"
 #include "error.h"
 
 namespace caustream::stream {
@@ -119,10 +123,89 @@ TEST(Encoder, JpegsHaveTheSubsamplingAndTheQualityAskedFor) {
     EXPECT_GT(psnr(decode(full).rgb, rgb.pixels), 33.0);   // what quality 80 is worth
 }
 
+// Samples that differ in every byte, so that none may take another's place.
+Frame mapOf(render::Sample sample, int bands) {
+    Frame frame;
+    frame.width = 19, frame.height = 7, frame.bands = bands, frame.sample = sample;
+    const std::size_t bytes = sample == render::Sample::U8 ? 1 : sample == render::Sample::F16 ? 2 : 4;
+    frame.pixels.resize(19 * 7 * static_cast<std::size_t>(bands) * bytes);
+    for (std::size_t i = 0; i < frame.pixels.size(); ++i) frame.pixels[i] = static_cast<std::uint8_t>(i * 37 + i / 256);
+    return frame;
+}
+
+protocol::FrameHeader headerOf(const Frame& frame, Encoding encoding) {
+    protocol::FrameHeader header;
+    header.encoding = encoding;
+    header.sample = frame.sample == render::Sample::U8    ? protocol::Sample::U8
+                    : frame.sample == render::Sample::F16 ? protocol::Sample::F16
+                                                          : protocol::Sample::F32;
+    header.layout = layoutOf(encoding, header.sample);
+    header.width = static_cast<std::uint16_t>(frame.width), header.height = static_cast<std::uint16_t>(frame.height);
+    header.bands = static_cast<std::uint16_t>(frame.bands);
+    return header;
+}
+
+TEST(Encoder, ZstdComesBackBitForBit) {
+    Encoder encoder;
+    for (const auto sample : {render::Sample::U8, render::Sample::F16, render::Sample::F32}) {
+        for (const int bands : {1, 3, 7}) {
+            const Frame frame = mapOf(sample, bands);
+            const auto bytes = payload(encoder.encode(frame, {.encoding = Encoding::Zstd}));
+            const auto image = connection::Decoder().decode(headerOf(frame, Encoding::Zstd), bytes);
+            ASSERT_TRUE(image.has_value()) << image.error();
+            EXPECT_EQ(image->data, frame.pixels) << bands;
+            EXPECT_EQ(image->bands, bands);
+        }
+    }
+}
+
+TEST(Encoder, ShufflingIsAsTheProtocolSays) {
+    Frame frame;
+    frame.width = 2, frame.height = 1, frame.bands = 2, frame.sample = render::Sample::F16;
+    frame.pixels = {0x11, 0x12, 0x21, 0x22, 0x31, 0x32, 0x41, 0x42};   // texel 0 band 0, texel 0 band 1, texel 1 band 0...
+    const auto bytes = payload(Encoder().encode(frame, {.encoding = Encoding::Zstd}));
+    std::vector<std::uint8_t> shuffled(8);
+    ASSERT_EQ(ZSTD_decompress(shuffled.data(), shuffled.size(), bytes.data(), bytes.size()), 8u);
+    EXPECT_EQ(shuffled, (std::vector<std::uint8_t>{0x11, 0x31, 0x21, 0x41, 0x12, 0x32, 0x22, 0x42}));
+}
+
+TEST(Encoder, SmoothMapsShrinkMoreForBeingShuffled) {
+    Frame frame;
+    frame.width = frame.height = 128, frame.bands = 3, frame.sample = render::Sample::F32;
+    for (int i = 0; i < 128 * 128 * 3; ++i) {
+        const float value = 1.0f + 0.5f * std::sin(0.01f * static_cast<float>(i));
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
+        frame.pixels.insert(frame.pixels.end(), bytes, bytes + sizeof value);
+    }
+    std::vector<std::uint8_t> plain(ZSTD_compressBound(frame.pixels.size()));
+    const std::size_t unshuffled = ZSTD_compress(plain.data(), plain.size(), frame.pixels.data(), frame.pixels.size(), 1);
+    EXPECT_LT(static_cast<double>(payload(Encoder().encode(frame, {.encoding = Encoding::Zstd})).size()), 0.9 * static_cast<double>(unshuffled));
+}
+
+TEST(Decoder, RefusesZstdThatIsNotWhatItsHeaderSays) {
+    const Frame frame = mapOf(render::Sample::F16, 3);
+    const auto good = payload(Encoder().encode(frame, {.encoding = Encoding::Zstd}));
+    const protocol::FrameHeader header = headerOf(frame, Encoding::Zstd);
+    connection::Decoder decoder;
+    ASSERT_TRUE(decoder.decode(header, good).has_value());
+    for (std::size_t cut = 0; cut < good.size(); cut += 1 + good.size() / 50) {
+        EXPECT_FALSE(decoder.decode(header, std::span(good).first(cut)).has_value()) << cut;
+    }
+    protocol::FrameHeader other = header;
+    other.width = 18;   // fewer samples than there are
+    EXPECT_FALSE(decoder.decode(other, good).has_value());
+    other.width = other.height = 4096, other.bands = 64;   // and more than anyone should take memory for
+    EXPECT_FALSE(decoder.decode(other, good).has_value());
+    auto twice = good;
+    twice.insert(twice.end(), good.begin(), good.end());
+    EXPECT_FALSE(decoder.decode(header, twice).has_value());
+    EXPECT_FALSE(decoder.decode(header, std::vector<std::uint8_t>(64, 0xaa)).has_value());
+}
+
 TEST(Encoder, OnlyJpegIsMadeOfOtherLayouts) {
     Encoder encoder;
     const Frame rgb = picture(32, 32);
-    for (const auto encoding : {Encoding::Png, Encoding::Raw}) {
+    for (const auto encoding : {Encoding::Png, Encoding::Raw, Encoding::Zstd}) {
         EXPECT_NO_THROW(encoder.encode(rgb, {.encoding = encoding}));
         EXPECT_THROW(encoder.encode(withFourBytes(rgb), {.encoding = encoding}), Error);
         EXPECT_THROW(encoder.encode(planar(rgb, PixelLayout::Yuv444), {.encoding = encoding}), Error);
