@@ -85,6 +85,29 @@ void compare(render::Pipeline& pipeline, render::Request request, const EncodeOp
     std::fflush(stdout);
 }
 
+// A spectral map without loss, as it is and compressed.
+void compareMaps(render::Pipeline& pipeline, render::Request request, const EncodeOptions& options) {
+    request.target = render::Target::Spectral;
+    stream::Encoder encoder;
+    for (const bool bands : {false, true}) {
+        for (const auto sample : {render::Sample::F16, render::Sample::F32}) {
+            request.wavelengthBands = bands, request.sample = sample;
+            const render::Frame frame = pipeline.run(request);
+            std::array<std::vector<double>, 2> times;
+            std::array<std::size_t, 2> bytes{};
+            for (int i = 0; i < options.frames; ++i) {
+                for (std::size_t way = 0; way < bytes.size(); ++way) {
+                    const double start = cpuMs();
+                    bytes[way] = encoder.encode(frame, {.encoding = way == 0 ? protocol::Encoding::Raw : protocol::Encoding::Zstd}).size();
+                    times[way].push_back(cpuMs() - start);
+                }
+            }
+            std::printf("map of %d bands, %s: raw %zu kB in %.2f ms, zstd %zu kB in %.2f ms\n", frame.bands, sample == render::Sample::F16 ? "f16" : "f32",
+                        bytes[0] / 1000, median(times[0]), bytes[1] / 1000, median(times[1]));
+        }
+    }
+}
+
 // Pictures of a stream whose level of the quality ladder goes up and down with every frame: images of the other size are made anew.
 void changeSize(render::Pipeline& pipeline, render::Request request, const EncodeOptions& options) {
     std::map<std::pair<bool, bool>, std::vector<double>> times;   // small, after the other size
@@ -121,13 +144,14 @@ void encodeTime(const EncodeOptions& options) {
         compare(pipeline, request, options);
         changeSize(pipeline, request, options);
     }
+    compareMaps(pipeline, request, options);
 }
 
 }  // namespace
 
 void addEncode(CLI::App& app) {
     const auto options = std::make_shared<EncodeOptions>();
-    CLI::App* command = app.add_subcommand("encode", "the ways from a drawn picture to a JPEG, beside each other");
+    CLI::App* command = app.add_subcommand("encode", "the ways from a drawn picture to a JPEG, and of a map without loss, beside each other");
     command->add_option("--scene", options->scene, "a built-in scene")->capture_default_str();
     command->add_option("--gpu", options->gpu, "auto, software, an index or part of a name")->capture_default_str();
     command->add_option("--frames", options->frames, "frames counted")->check(CLI::Range(3, 10000))->capture_default_str();
