@@ -40,7 +40,7 @@ std::string readToken(const std::string& path) {
 std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     Config config;
     std::string level = "info", tokenFile;
-    std::size_t viewerMb = 1024;
+    std::size_t viewerMb = 1024, assetCacheMb = 512, assetDirMb = 4096;
     CLI::App app(kAbout, "caustream-server");
     app.add_option("--port", config.port, "TCP port; 0 takes any free one")->check(CLI::Range(0, 65535))->capture_default_str();
     app.add_option("--bind", config.bind, "IPv4 address to listen on; another than loopback needs --token-file")->capture_default_str();
@@ -55,6 +55,13 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
         ->check(CLI::Range(0, 1000));
     app.add_option("--viewer-mb", viewerMb, "memory that one viewer's scene, maps and pictures may take, estimated")
         ->check(CLI::Range(16, 1 << 20))
+        ->capture_default_str();
+    app.add_option("--asset-cache-mb", assetCacheMb, "memory for scenes that no one shows any more")
+        ->check(CLI::Range(0, 1 << 20))
+        ->capture_default_str();
+    app.add_option("--asset-dir", config.assetDir, "folder to keep uploaded files in; servers that share it have each other's");
+    app.add_option("--asset-dir-mb", assetDirMb, "what that folder may hold; the oldest files go")
+        ->check(CLI::Range(64, 1 << 24))
         ->capture_default_str();
     app.add_option("--test-frame-bytes", config.testFrameBytes, "send noise of so many bytes a frame instead of pictures: to measure links")
         ->check(CLI::Range(0, 64 << 20));
@@ -74,6 +81,8 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
         throw Error(std::string("command line; ") + problem.what() + "; try --help");
     }
     config.viewerBytes = viewerMb << 20;
+    config.assetCacheBytes = assetCacheMb << 20;
+    config.assetDirBytes = assetDirMb << 20;
     if (const auto known = log::levelFromName(level)) {
         config.logLevel = *known;
     } else {

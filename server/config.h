@@ -20,6 +20,9 @@ struct Config {
     int maxSessions = 8;
     int gpuMsPerS = 0;               // GPU time that one viewer gets in a second; 0: no limit
     std::size_t viewerBytes = 1u << 30;  // estimated, that one viewer may take
+    std::size_t assetCacheBytes = 512u << 20;  // of scenes that no one shows
+    std::string assetDir;            // where uploaded files are kept, for other servers too; empty: nowhere
+    std::size_t assetDirBytes = 4096ull << 20;
     std::size_t testFrameBytes = 0;  // frames are that many bytes of noise instead of pictures; 0: pictures
     int testFrameMs = 0;             // and take this long to draw
     std::string planScene;        // print its plan instead of serving: a built-in scene's name or a GLB file

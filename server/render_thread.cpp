@@ -167,14 +167,14 @@ void RenderThread::serve(Gpu& gpu) {
     while (!stopping_) {
         std::uint64_t wakeUs = 0;
         const std::uint64_t now = session::nowUs();
-        if (std::optional<FrameJob> job = scheduler_.next(now, wakeUs)) {
-            lock.unlock();
-            draw(gpu, std::move(*job));
-            lock.lock();
-        } else if (std::exchange(collecting_, false)) {
+        if (std::exchange(collecting_, false)) {  // first: there may always be a frame to draw
             std::erase_if(stills_, [this](const auto& still) { return !scheduler_.knows(still.first); });
             lock.unlock();
             gpu.pipeline.collect();
+            lock.lock();
+        } else if (std::optional<FrameJob> job = scheduler_.next(now, wakeUs)) {
+            lock.unlock();
+            draw(gpu, std::move(*job));
             lock.lock();
         } else if (!config_.shaderDir.empty()) {
             wake_.wait_for(lock, kShaderPoll);

@@ -30,6 +30,7 @@ protocol::Limits limitsOf(const Config& config) {
     limits.sessions = static_cast<std::uint32_t>(config.maxSessions);
     limits.gpuMsPerS = static_cast<std::uint32_t>(config.gpuMsPerS);
     limits.viewerBytes = config.viewerBytes;
+    limits.assetCacheBytes = config.assetCacheBytes;
     return limits;
 }
 
@@ -48,6 +49,9 @@ Service::Service(const Config& config)
     renderer_ = std::make_unique<RenderThread>(config_, [this](Delivery&& delivery) { deliver(std::move(delivery)); });
     desk_.renderer = renderer_.get();
     desk_.loader = &loader_;
+    if (!config_.assetDir.empty()) {
+        desk_.assets = &assets_.emplace(config_.assetDir, config_.assetDirBytes, desk_.limits.assetBytes);
+    }
     desk_.post = [this](std::function<void()> task) { server_.post(std::move(task)); };
     desk_.findSession = [this](std::string_view id) -> Viewer* {
         for (const auto& [key, viewer] : viewers_) {
@@ -115,6 +119,8 @@ void Service::tick() {
         viewer->tick(now);
     }
     desk_.kept.sweep(now);
+    desk_.scenes.trim();
+    renderer_->collect();
     if (desk_.draining && now - drainSinceUs_ > kDrainUs) {
         server_.stop();
     }

@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -40,7 +41,8 @@ class Service final : private net::Endpoint {
 
     // In this order: the socket outlives whoever posts to it.
     net::WebSocketServer server_;
-    session::LoadThread loader_;
+    std::optional<session::AssetDirectory> assets_;
+    session::LoadPool loader_;
     std::unique_ptr<RenderThread> renderer_;
     std::thread network_;
 };

@@ -41,6 +41,7 @@ Viewer::Viewer(Desk& desk, net::Connection& connection)
       heardUs_(openedUs_) {}
 
 Viewer::~Viewer() {
+    desk_.loader->end(connection_.id());
     if (session_) {
         --desk_.sessions;
     }

@@ -1,8 +1,10 @@
 // One connected client: what it says, and what happens then. Network thread only.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,8 +15,9 @@
 #include "protocol/messages.h"
 #include "render_thread.h"
 #include "scene/gltf_loader.h"
+#include "session/asset_directory.h"
 #include "session/asset_upload.h"
-#include "session/load_thread.h"
+#include "session/load_pool.h"
 #include "session/outbox.h"
 #include "session/scene_store.h"
 #include "session/session.h"
@@ -30,9 +33,10 @@ struct Desk {
     const Config& config;
     protocol::Limits limits;
     std::string serverId;
-    session::SceneStore scenes;
+    session::SceneStore scenes{limits.assetCacheBytes};
+    const session::AssetDirectory* assets = nullptr;        // nothing: uploads end with this server
     RenderThread* renderer = nullptr;
-    session::LoadThread* loader = nullptr;
+    session::LoadPool* loader = nullptr;
     std::function<void(std::function<void()>)> post;        // onto the network thread
     std::function<Viewer*(SessionKey)> find;                // nothing once it has gone
     std::function<Viewer*(std::string_view)> findSession;   // by its id or view id
@@ -60,6 +64,7 @@ class Viewer {
 
    private:
     using Loaded = tl::expected<scene::Scene, scene::LoadError>;
+    using Source = std::function<Loaded(const scene::LoadObserver&)>;  // runs on a load thread
     using Outcome = std::function<void(const std::optional<protocol::DecodeError>&)>;
 
     // A change of the state document on its way, which may have to wait for its scene.
@@ -99,6 +104,12 @@ class Viewer {
     void welcome(std::uint32_t id, std::vector<std::string> missingAssets);
     void change(Change change);
     void load(const protocol::SceneRef& ref, protocol::Applied applied, Change change);
+    bool isStored(const std::string& sha256) const;
+    static Source storedAsset(const session::AssetDirectory& folder, const std::string& sha256);
+    std::shared_ptr<std::atomic<bool>> read(Source source, std::function<void(Viewer&, Loaded)> done);
+    void readAsset(std::uint32_t id, std::uint32_t asset, const std::string& sha256, Source source);
+    void tellProgress(int percent);
+    void hasRead();
     void loaded(const protocol::SceneRef& ref, Loaded result, protocol::Applied applied, Change change);
     std::optional<protocol::DecodeError> finish(protocol::Applied applied, std::shared_ptr<const scene::Scene> base,
                                                 const Change& change);
@@ -141,6 +152,9 @@ class Viewer {
     std::optional<session::AssetUpload> upload_;
     std::optional<std::pair<std::uint32_t, std::string>> knownAsset_;  // begun, but already here: number, hash
     std::uint32_t nextAsset_ = 1;
+    std::map<std::uint32_t, std::shared_ptr<std::atomic<bool>>> reading_;  // assets, and what ends the reading
+    int loads_ = 0;              // files being read, or waiting for it
+    bool tellsProgress_ = false;
 
     std::uint32_t requestsPending_ = 0;
     bool streaming_ = false, wantsStats_ = false, readsPng_ = false;

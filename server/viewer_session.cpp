@@ -160,7 +160,7 @@ void Viewer::on(const protocol::Hello& hello) {
     // A scene that the client had uploaded may have to be uploaded again.
     std::vector<std::string> missing;
     const protocol::SceneRef& scene = applied->state.scene;
-    if (scene.kind == protocol::SceneRef::Kind::Asset && !desk_.scenes.find(scene)) {
+    if (scene.kind == protocol::SceneRef::Kind::Asset && !desk_.scenes.find(scene) && !isStored(scene.name)) {
         missing.push_back(scene.name);
         for (const char* ofThatScene : {"scene", "lights", "materials", "camera"}) {
             document->erase(ofThatScene);

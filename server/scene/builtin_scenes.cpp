@@ -16,10 +16,10 @@ std::span<const BuiltinScene> builtinScenes() {
     return scenes;
 }
 
-tl::expected<Scene, LoadError> loadBuiltin(std::string_view name) {
+tl::expected<Scene, LoadError> loadBuiltin(std::string_view name, const LoadObserver& observer) {
     std::string known;
     for (const BuiltinScene& scene : builtinScenes()) {
-        if (scene.name == name) return loadGlb(std::as_bytes(std::span(scene.glb)), std::string(name));
+        if (scene.name == name) return loadGlb(std::as_bytes(std::span(scene.glb)), std::string(name), {}, observer);
         known += (known.empty() ? "" : ", ") + std::string(scene.name);
     }
     return tl::unexpected(LoadError{"no built-in scene is called \"" + std::string(name) + "\"; there are " + known});

@@ -16,6 +16,6 @@ struct BuiltinScene {
 std::span<const BuiltinScene> builtinScenes();
 
 // Loads one by name; the error lists the names there are.
-tl::expected<Scene, LoadError> loadBuiltin(std::string_view name);
+tl::expected<Scene, LoadError> loadBuiltin(std::string_view name, const LoadObserver& observer = {});
 
 }  // namespace caustream::scene

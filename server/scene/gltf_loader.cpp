@@ -86,6 +86,7 @@ class Loader {
     std::size_t budget_;  // vertices and indices that may still be read
     std::size_t budgetBefore_ = 0;  // readMeshes() began
     double toRead_ = 1.0;           // by it
+    double cleaned_ = 0.0;          // of them, in parts that are objects now
     NameTable materialNames_, lightNames_, cameraNames_;
     std::vector<PlacedNode> nodes_;
     std::shared_ptr<Geometry> geometry_ = std::make_shared<Geometry>();
@@ -149,7 +150,9 @@ double Loader::elementsToRead() const {
 }
 
 Status Loader::reachedMeshes() const {
-    return reached(kPictures + (1.0 - kPictures) * static_cast<double>(budgetBefore_ - budget_) / toRead_);
+    // To clean a mesh takes about as long as to read it.
+    const double done = 0.5 * (static_cast<double>(budgetBefore_ - budget_) + cleaned_) / toRead_;
+    return reached(kPictures + (1.0 - kPictures) * done);
 }
 
 Status Loader::readMeshes() {
@@ -204,9 +207,11 @@ Status Loader::addObject(std::string name, int material, Part part) {
     const std::string what = "\"" + name + "\"";
     if (geometry_->objects.size() >= kMaxObjects) return fail("the file has more than " + std::to_string(kMaxObjects) + " objects");
     if (auto ok = reachedMeshes(); !ok) return ok;
+    const double elements = static_cast<double>(part.vertices.size() + part.indices.size());
     if (caster) {
         if (const std::size_t dropped = dropDuplicates(part); dropped > 0)
             warn(what + ": " + std::to_string(dropped) + " triangles that are there twice were left out");
+        cleaned_ += 0.5 * elements;
         if (auto ok = reachedMeshes(); !ok) return ok;
         const Topology topology = examine(part);
         if (topology.crowdedEdges > 0)
@@ -228,6 +233,8 @@ Status Loader::addObject(std::string name, int material, Part part) {
     object.name = std::move(name);
     object.material = material;
     append(std::move(object), part.vertices, part.indices);
+    cleaned_ += caster ? 0.5 * elements : elements;
+    if (auto ok = reachedMeshes(); !ok) return ok;
     casters_ += caster;
     if (casters_ > limits_.casters)
         return fail("the file has more than " + std::to_string(limits_.casters) +

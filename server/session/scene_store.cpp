@@ -1,6 +1,5 @@
 #include "session/scene_store.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace caustream::session {
@@ -20,38 +19,66 @@ std::size_t bytesOf(const scene::Geometry& geometry) {
 
 }  // namespace
 
-std::shared_ptr<const scene::Scene> SceneStore::find(const protocol::SceneRef& ref) {
-    const auto known = known_.find(keyOf(ref));
-    if (known == known_.end()) {
-        return nullptr;
+std::shared_ptr<const scene::Scene> SceneStore::share(Kept& kept) {
+    if (auto scene = kept.shared.lock()) {
+        return scene;
     }
-    std::shared_ptr<const scene::Scene> scene = known->second.lock();
-    if (!scene) {
-        known_.erase(known);
-        return nullptr;
+    std::shared_ptr<const scene::Geometry> geometry = kept.shown.lock();
+    if (!geometry) {
+        const scene::Geometry* address = kept.scene.geometry.get();
+        geometry = {address, [owner = kept.scene.geometry](const scene::Geometry*) {}};
     }
-    const auto kept = std::ranges::find(kept_, known->first, &Kept::key);
-    if (kept != kept_.end()) {
-        kept_.splice(kept_.begin(), kept_, kept);
-    }
+    auto scene = std::make_shared<scene::Scene>(kept.scene);
+    scene->geometry = geometry;
+    kept.shown = geometry;
+    kept.shared = scene;
     return scene;
 }
 
-void SceneStore::put(const protocol::SceneRef& ref, std::shared_ptr<const scene::Scene> scene) {
-    const std::string key = keyOf(ref);
-    kept_.remove_if([&](const Kept& kept) { return kept.key == key; });
-    kept_.push_front({key, scene, bytesOf(*scene->geometry)});
-    known_[key] = std::move(scene);
-    std::size_t total = 0;
-    std::size_t keep = 0;
-    for (const Kept& kept : kept_) {
-        total += kept.bytes;
-        if (keep > 0 && total > kKeptBytes) {
-            break;
-        }
-        ++keep;
+std::shared_ptr<const scene::Scene> SceneStore::find(const protocol::SceneRef& ref) {
+    const auto found = entries_.find(keyOf(ref));
+    if (found == entries_.end()) {
+        return nullptr;
     }
-    kept_.resize(keep);
+    order_.splice(order_.begin(), order_, found->second.place);
+    return share(found->second.kept);
+}
+
+std::shared_ptr<const scene::Scene> SceneStore::put(const protocol::SceneRef& ref, scene::Scene scene) {
+    const std::string key = keyOf(ref);
+    if (const auto old = entries_.find(key); old != entries_.end()) {
+        order_.erase(old->second.place);
+        entries_.erase(old);
+    }
+    order_.push_front(key);
+    const std::size_t bytes = bytesOf(*scene.geometry);
+    Entry& entry = entries_[key];
+    entry = {.kept = {.scene = std::move(scene), .bytes = bytes, .shared = {}, .shown = {}}, .place = order_.begin()};
+    auto shared = share(entry.kept);
+    trim();
+    return shared;
+}
+
+void SceneStore::trim() {
+    std::size_t idle = 0;
+    for (auto place = order_.begin(); place != order_.end();) {
+        const bool newest = place == order_.begin();  // it was uploaded to be shown next
+        const auto entry = entries_.find(*place++);
+        const Kept& kept = entry->second.kept;
+        if (kept.idle() && (idle += kept.bytes) > budgetBytes_ && !newest) {
+            idle -= kept.bytes;
+            order_.erase(entry->second.place);
+            entries_.erase(entry);
+        }
+    }
+}
+
+std::size_t SceneStore::idleBytes() const {
+    std::size_t bytes = 0;
+    for (const auto& [key, entry] : entries_) {
+        bytes += entry.kept.idle() ? entry.kept.bytes : 0;
+    }
+    return bytes;
 }
 
 }  // namespace caustream::session

@@ -1,14 +1,10 @@
 // A file sent in chunks becomes a scene; a file that is not what it says is refused, and nothing else suffers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <openssl/evp.h>
-#include <zlib.h>
-
-#include <algorithm>
 
 #include "raw_client.h"
-#include "scene/builtin_scenes.h"
 #include "server_process.h"
+#include "uploader.h"
 
 namespace caustream::e2e {
 namespace {
@@ -18,40 +14,6 @@ using testing::HasSubstr;
 const Json kSmall = {{"transport", {{"photon_grid", 64}, {"map_size", 64}}}, {"stream", {{"width", 64}, {"height", 64}}}};
 constexpr std::size_t kChunk = 100'000;
 
-std::string builtinGlb(std::string_view name) {
-    for (const scene::BuiltinScene& builtin : scene::builtinScenes()) {
-        if (builtin.name == name) {
-            return std::string(builtin.glb);
-        }
-    }
-    return {};
-}
-
-std::string sha256(std::string_view bytes) {
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned length = 0;
-    EVP_Digest(bytes.data(), bytes.size(), digest, &length, EVP_sha256(), nullptr);
-    std::string text;
-    for (unsigned i = 0; i < length; ++i) {
-        char byte[3];
-        std::snprintf(byte, sizeof byte, "%02x", digest[i]);
-        text += byte;
-    }
-    return text;
-}
-
-std::vector<std::uint8_t> chunkOf(std::uint32_t asset, std::string_view file, std::size_t offset, std::size_t size) {
-    const std::string_view payload = file.substr(offset, size);
-    protocol::ChunkHeader header{.asset = asset, .offset = offset, .payloadLen = static_cast<std::uint32_t>(payload.size())};
-    header.crc32 = static_cast<std::uint32_t>(
-        crc32(0, reinterpret_cast<const Bytef*>(payload.data()), static_cast<uInt>(payload.size())));
-    const auto encoded = protocol::encodeHeader(header);
-    std::vector<std::uint8_t> bytes(encoded.size() + payload.size());
-    std::ranges::copy(encoded, bytes.begin());
-    std::ranges::copy(payload, bytes.begin() + encoded.size());
-    return bytes;
-}
-
 class Upload : public testing::Test {
    protected:
     Upload() {
@@ -59,32 +21,9 @@ class Upload : public testing::Test {
         viewer_.update(kSmall);
     }
 
-    Json begin(std::string_view file, const std::string& hash) {
-        return viewer_.ask({{"op", "asset.begin"}, {"sha256", hash}, {"size", file.size()}, {"mime", "model/gltf-binary"}});
-    }
-
-    // Sends `file` as one whose hash is `hash`, minding the credit; the reply to asset.end.
-    Json send(std::string_view file, const std::string& hash) {
-        const Json offer = begin(file, hash);
-        EXPECT_EQ(offer["op"], "ok") << offer;
-        const std::uint32_t asset = offer["asset"];
-        std::size_t granted = offer["have"].get<std::size_t>() + offer["credit"].get<std::size_t>();
-        for (std::size_t at = offer["have"]; at < file.size();) {
-            const std::size_t size = std::min(kChunk, file.size() - at);
-            while (at + size > granted) {
-                const auto credit = viewer_.textOf("asset.credit", 10'000);
-                if (!credit) {
-                    ADD_FAILURE() << "no credit at byte " << at;
-                    return {};
-                }
-                granted = (*credit)["have"].get<std::size_t>() + (*credit)["credit"].get<std::size_t>();
-            }
-            viewer_.binary(chunkOf(asset, file, at, size));
-            at += size;
-        }
-        return viewer_.ask({{"op", "asset.end"}, {"asset", asset}});
-    }
-    Json send(std::string_view file) { return send(file, sha256(file)); }
+    Json begin(std::string_view file, const std::string& hash) { return beginUpload(viewer_, file, hash); }
+    Json send(std::string_view file, const std::string& hash) { return upload(viewer_, file, hash); }
+    Json send(std::string_view file) { return upload(viewer_, file); }
 
     ServerProcess server_;
     RawClient viewer_{server_.port()};
@@ -113,18 +52,7 @@ TEST_F(Upload, AFileBecomesTheSceneItIs) {
 }
 
 TEST_F(Upload, AFileLargerThanTheCreditArrives) {
-    // The container allows unknown chunks behind the known ones: two million bytes of them.
-    std::string file = builtinGlb("gem");
-    const auto put = [&](std::size_t at, std::uint32_t value) {
-        for (int i = 0; i < 4; ++i) {
-            file[at + static_cast<std::size_t>(i)] = static_cast<char>(value >> (8 * i));
-        }
-    };
-    const std::size_t old = file.size();
-    file.resize(old + 8 + 2'000'000, 'x');
-    put(old, 2'000'000);
-    put(old + 4, 0x20202020);
-    put(8, static_cast<std::uint32_t>(file.size()));
+    const std::string file = padded(builtinGlb("gem"), 2'000'000);
     const Json report = send(file);
     EXPECT_EQ(report["op"], "ok") << report;
 }
