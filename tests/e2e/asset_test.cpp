@@ -1,6 +1,7 @@
 // Uploaded files beyond one upload: found in the folder that servers share, read with progress, ended, not in others' way.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -139,6 +140,40 @@ TEST(AssetDirFlag, AFolderThatCannotBeMadeIsOneLine) {
     const Ended ended = runServer({"--port", "0", "--asset-dir", "/proc/none"});
     EXPECT_EQ(ended.exitCode, 1);
     EXPECT_THAT(ended.err, HasSubstr("asset directory; cannot write to /proc/none"));
+}
+
+int glObjects(int port) {
+    constexpr std::string_view kName = "\ncaustream_gl_objects ";
+    const std::string metrics = httpGet(port, "/metrics");
+    const std::size_t at = metrics.find(kName);
+    return at == std::string::npos ? -1 : std::stoi(metrics.substr(at + kName.size()));
+}
+
+// The scene itself is kept in memory, as the budget allows.
+TEST(GpuCopies, GoWithTheLastWhoShowsThem) {
+    ServerProcess server;
+    RawClient staying(server.port());
+    staying.hello();
+    staying.update(kSmall);
+    staying.update({{"scene", {"builtin", "prism"}}});
+    staying.requestFrame();
+    const int before = glObjects(server.port());
+    ASSERT_GT(before, 0);
+    {
+        RawClient leaving(server.port());
+        leaving.hello();
+        leaving.update(kSmall);
+        ASSERT_EQ(leaving.update({{"scene", {"builtin", "sphere"}}})["op"], "ok");
+        leaving.requestFrame();
+        EXPECT_GT(glObjects(server.port()), before);
+    }
+    int after = 0;
+    for (int tries = 0; tries < 100 && (after = glObjects(server.port())) > before; ++tries) {
+        usleep(100'000);
+    }
+    EXPECT_LE(after, before);
+    staying.requestFrame();
+    EXPECT_LE(glObjects(server.port()), before) << "and what is shown is drawn from what there was";
 }
 
 class LongLoad : public testing::Test {
