@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <unordered_map>
-#include <unordered_set>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace caustream::scene {
 
@@ -36,22 +36,23 @@ glm::dvec3 unitOrZero(const glm::dvec3& v) {
     return std::isfinite(length) && length > 0.0 ? v / length : glm::dvec3(0.0);
 }
 
-struct PositionHash {
-    std::size_t operator()(const glm::vec3& p) const {
-        std::size_t h = 0;
-        for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<std::uint32_t>(p[k] + 0.0f)) * 0x9E3779B97F4A7C15u;
-        return h ^ h >> 32;
-    }
-};
+bool before(const glm::vec3& a, const glm::vec3& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
 
-// One number for each distinct position.
+// One number for each distinct position. By sorting, here and below: a hash table of millions of entries takes several
+// times the memory and the time.
 std::vector<std::uint32_t> weld(const Part& part) {
-    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> numbers;
-    numbers.reserve(part.vertices.size());
-    std::vector<std::uint32_t> welded(part.vertices.size());
-    for (std::size_t i = 0; i < welded.size(); ++i)
-        welded[i] =
-            numbers.try_emplace(part.vertices[i].position, static_cast<std::uint32_t>(numbers.size())).first->second;
+    const std::vector<Vertex>& vertices = part.vertices;
+    std::vector<std::uint32_t> order(vertices.size()), welded(vertices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return before(vertices[a].position, vertices[b].position); });
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i > 0 && vertices[order[i]].position != vertices[order[i - 1]].position) ++number;
+        welded[order[i]] = number;
+    }
     return welded;
 }
 
@@ -105,7 +106,7 @@ std::size_t bake(const TriangleSoup& soup, const glm::dmat4& world, Part& part, 
 
 Topology examine(const Part& part) {
     const std::vector<std::uint32_t> welded = weld(part);
-    std::unordered_map<std::uint64_t, std::uint32_t> edges;
+    std::vector<std::uint64_t> edges;
     edges.reserve(part.indices.size());
     Topology topology;
     // Around one of its own points, so that a small mesh far from the origin keeps its digits.
@@ -114,40 +115,45 @@ Topology examine(const Part& part) {
         glm::dvec3 p[3];
         for (int k = 0; k < 3; ++k) {
             p[k] = glm::dvec3(part.vertices[part.indices[t + k]].position) - origin;
-            ++edges[edgeKey(welded[part.indices[t + k]], welded[part.indices[t + (k + 1) % 3]])];
+            edges.push_back(edgeKey(welded[part.indices[t + k]], welded[part.indices[t + (k + 1) % 3]]));
         }
         topology.volume += glm::dot(p[0], glm::cross(p[1], p[2])) / 6.0;
     }
+    std::sort(edges.begin(), edges.end());
     bool paired = !edges.empty();
-    for (const auto& [key, count] : edges) {
-        const auto partner = edges.find(key << 32 | key >> 32);
-        const std::uint32_t back = partner == edges.end() ? 0 : partner->second;
+    for (auto edge = edges.begin(); edge != edges.end();) {
+        const auto next = std::upper_bound(edge, edges.end(), *edge);
+        const auto partners = std::equal_range(edges.begin(), edges.end(), *edge << 32 | *edge >> 32);
+        const auto count = next - edge, back = partners.second - partners.first;
         paired = paired && back == count;
-        if (back == 0) topology.openEdges += count;
+        if (back == 0) topology.openEdges += static_cast<std::size_t>(count);
         if (count + back > 2) ++topology.crowdedEdges;
+        edge = next;
     }
     topology.closed = paired;
     return topology;
 }
 
 std::size_t dropDuplicates(Part& part) {
-    struct FaceHash {
-        std::size_t operator()(const std::array<std::uint32_t, 3>& f) const {
-            return (f[0] * 0x9E3779B97F4A7C15u ^ f[1]) * 0x9E3779B97F4A7C15u ^ f[2];
-        }
-    };
+    using Corners = std::array<std::uint32_t, 3>;
     const std::vector<std::uint32_t> welded = weld(part);
-    std::unordered_set<std::array<std::uint32_t, 3>, FaceHash> seen;
-    std::vector<std::uint32_t> kept;
-    kept.reserve(part.indices.size());
+    std::vector<std::pair<Corners, std::uint32_t>> faces;  // and where its indices begin
+    faces.reserve(part.indices.size() / 3);
     for (std::size_t t = 0; t < part.indices.size(); t += 3) {
-        std::array<std::uint32_t, 3> face;
+        Corners face;
         for (int k = 0; k < 3; ++k) face[k] = welded[part.indices[t + k]];
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-        if (seen.insert(face).second)
+        faces.emplace_back(face, static_cast<std::uint32_t>(t));
+    }
+    std::sort(faces.begin(), faces.end());
+    std::vector<bool> again(part.indices.size() / 3, false);
+    for (std::size_t i = 1; i < faces.size(); ++i) again[faces[i].second / 3] = faces[i].first == faces[i - 1].first;
+    std::vector<std::uint32_t> kept;
+    kept.reserve(part.indices.size());
+    for (std::size_t t = 0; t < part.indices.size(); t += 3)
+        if (!again[t / 3])
             kept.insert(kept.end(), part.indices.begin() + static_cast<std::ptrdiff_t>(t),
                         part.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
-    }
     const std::size_t dropped = (part.indices.size() - kept.size()) / 3;
     part.indices = std::move(kept);
     return dropped;
