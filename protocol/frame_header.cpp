@@ -191,7 +191,8 @@ tl::expected<ChunkHeader, DecodeError> decodeChunkHeader(std::span<const std::ui
     in.get(header.crc32);
     if (header.payloadLen != message.size() - header.headerLen)
         return fail(ErrorCode::BadMessage, "payload_len", "must be what follows the header");
-    if (header.payloadLen == 0 || header.payloadLen > limits.chunkBytes)
+    if (header.payloadLen == 0) return fail(ErrorCode::OutOfRange, "payload_len", "a chunk holds at least one byte");
+    if (header.payloadLen > limits.chunkBytes)
         return fail(ErrorCode::TooLarge, "payload_len", "must be 1 to " + std::to_string(limits.chunkBytes));
     // Subtraction, as the sum may wrap.
     if (header.offset > limits.assetBytes || header.payloadLen > limits.assetBytes - header.offset)

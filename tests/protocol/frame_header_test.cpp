@@ -174,7 +174,7 @@ TEST(ChunkHeader, LengthsAndOffsetsAreBounded) {
     ++chunk.payloadLen;
     EXPECT_EQ(codeOf(chunk), "too_large");
     chunk.payloadLen = 0;
-    EXPECT_EQ(codeOf(chunk), "too_large");
+    EXPECT_EQ(codeOf(chunk), "out_of_range");
     chunk.payloadLen = 16;
     chunk.offset = limits.assetBytes - 16;
     EXPECT_EQ(codeOf(chunk), "accepted");
