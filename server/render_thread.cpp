@@ -167,10 +167,11 @@ void RenderThread::serve(Gpu& gpu) {
     while (!stopping_) {
         std::uint64_t wakeUs = 0;
         const std::uint64_t now = session::nowUs();
-        if (std::exchange(collecting_, false)) {  // first: there may always be a frame to draw
+        if (std::exchange(collecting_, false)) {   // before drawing: a server that always has something to draw collects, too
             std::erase_if(stills_, [this](const auto& still) { return !scheduler_.knows(still.first); });
+            const std::vector<const scene::Geometry*> shown = scheduler_.geometryShown();
             lock.unlock();
-            gpu.pipeline.collect();
+            gpu.pipeline.collect(shown);
             lock.lock();
         } else if (std::optional<FrameJob> job = scheduler_.next(now, wakeUs)) {
             lock.unlock();

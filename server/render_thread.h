@@ -40,7 +40,7 @@ class RenderThread {
         return change(scheduler_);
     }
 
-    // The renderer's caches of scenes that no one shows are dropped when it is next idle. Any thread.
+    // What the renderer made for scenes that no one shows is dropped before its next frame. Any thread.
     void collect();
 
     const std::string& gpuName() const { return gpuName_; }

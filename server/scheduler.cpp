@@ -128,6 +128,22 @@ bool Scheduler::outdated(const FrameJob& job) const {
     return entry == entries_.end() || entry->second.shown.view != job.shown.view;
 }
 
+std::vector<const scene::Geometry*> Scheduler::geometryShown() const {
+    std::vector<const scene::Geometry*> shown;
+    const auto add = [&](const Shown& one) {
+        if (one.view) {
+            shown.push_back(one.view->request.scene->geometry.get());
+        }
+    };
+    for (const auto& [session, entry] : entries_) {
+        add(entry.shown);
+        for (const Request& request : entry.requests) {
+            add(request.shown);
+        }
+    }
+    return shown;
+}
+
 void Scheduler::redrawAll() {
     for (auto& [session, entry] : entries_) {
         entry.drawnVersion = 0;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "resolve_request.h"
 #include "stream/ladder.h"
@@ -67,6 +68,9 @@ class Scheduler {
     void add(SessionKey session) { entries_[session]; }
     void remove(SessionKey session) { entries_.erase(session); }
     bool knows(SessionKey session) const { return entries_.contains(session); }
+
+    // Of every session, what it shows and what it has asked for; the same one may stand there twice.
+    std::vector<const scene::Geometry*> geometryShown() const;
 
     void show(SessionKey session, Shown shown);
     void setStreaming(SessionKey session, bool streaming);

@@ -115,6 +115,11 @@ struct SceneEntry {
     }
 };
 
+// Whether a light key is one of this geometry's.
+bool lightKeyOf(const std::string& key, const scene::Geometry* geometry) {
+    return key.size() >= sizeof geometry && std::memcmp(key.data(), &geometry, sizeof geometry) == 0;
+}
+
 struct LightEntry {
     std::string key;
     LightMaps maps;
@@ -367,7 +372,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
         request.transport.photonGrid = request.transport.mapSize = 64;
         run(request);
     }
-    collect();
+    collect({});
     impl_->calibration = {};   // what first frames take says nothing
     report(4);
 }
@@ -484,11 +489,20 @@ PixelLayout Pipeline::jpegPixels(bool halfChroma) const {
     return halfChroma ? PixelLayout::Yuv420 : PixelLayout::Yuv444;
 }
 
-void Pipeline::collect() {
-    // Whoever renders a scene holds its geometry; an entry whose three parts alone hold it is no longer wanted. Its light
-    // maps go too: their keys name the geometry by its address, which may come again.
-    const auto unused = [](const auto& entry) { return entry->geometry.use_count() <= 3; };
-    if (std::erase_if(impl_->scenes, unused) > 0) impl_->lights.clear(), impl_->chosen.clear();
+void Pipeline::collect(std::span<const scene::Geometry* const> shown) {
+    std::vector<const scene::Geometry*> gone;
+    std::erase_if(impl_->scenes, [&](const auto& entry) {
+        const scene::Geometry* geometry = entry->geometry.get();
+        if (std::ranges::find(shown, geometry) != shown.end()) return false;
+        gone.push_back(geometry);
+        return true;
+    });
+    if (gone.empty()) return;
+    // Their light maps, too: a key begins with the geometry's address, which may come again.
+    std::erase_if(impl_->lights, [&](const LightEntry& light) {
+        return std::ranges::any_of(gone, [&](const scene::Geometry* geometry) { return lightKeyOf(light.key, geometry); });
+    });
+    impl_->chosen.clear();
 }
 
 std::span<const std::string> passNames() { return kPassNames; }

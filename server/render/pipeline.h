@@ -29,8 +29,8 @@ class Pipeline {
     // What `Request::pixels` is best for a JPEG on this GPU; `halfChroma`: of 4:2:0.
     PixelLayout jpegPixels(bool halfChroma) const;
 
-    // Forgets what was cached for scenes that no one holds any more.
-    void collect();
+    // Forgets what was made for geometry that is not `shown`, whoever else may hold it: it is made again when it is shown again.
+    void collect(std::span<const scene::Geometry* const> shown);
 
    private:
     struct Impl;
