@@ -9,8 +9,9 @@ packages=(
     libexpected-dev libembree-dev libgtest-dev libgmock-dev libssl-dev zlib1g-dev libzstd-dev
     glmark2-data
 )
-# What only the tests need: a display without a screen, mouse events, a browser, a compiler with libFuzzer and its symbols.
-test_packages=(xvfb xdotool chromium ca-certificates clang libclang-rt-14-dev llvm)
+# What only the tests need: a display without a screen, mouse events, a browser, a client in another language, a compiler with
+# libFuzzer and its symbols.
+test_packages=(xvfb xdotool chromium ca-certificates python3 python3-websockets clang libclang-rt-14-dev llvm)
 
 missing() {
     local package
