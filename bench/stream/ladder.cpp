@@ -27,15 +27,17 @@ struct Phase {
 constexpr std::array<Phase, 4> kPhases = {{{20e6, 8, "20 MB/s"}, {2e6, 10, "2 MB/s"}, {0.6e6, 10, "0.6 MB/s"}, {4e6, 16, "4 MB/s"}}};
 constexpr double kMostMs = 150, kAfterDownS = 2, kAfterUpS = 10;
 constexpr std::uint64_t kWindowUs = 500'000;     // of a running median
-constexpr std::uint64_t kStepUs = 50'000;
+constexpr std::uint64_t kStepUs = 50'000, kSearchUs = 5'000'000;
 
-// Seconds from `fromUs` until the running median of the ages is under the limit; as long as the phase if it never is.
-double backUnderS(const std::vector<Arrival>& frames, std::uint64_t fromUs, std::uint64_t toUs) {
-    for (std::uint64_t at = fromUs; at + kWindowUs <= toUs; at += kStepUs) {
+// Seconds from `fromUs` to the end of the last half second, of those that begin within kSearchUs, whose median age is not under the
+// limit, or in which nothing came; 0: there was none.
+double backUnderS(const std::vector<Arrival>& frames, std::uint64_t fromUs) {
+    double back = 0;
+    for (std::uint64_t at = fromUs; at < fromUs + kSearchUs; at += kStepUs) {
         const std::vector<double> ages = agesMs(frames, at, at + kWindowUs);
-        if (!ages.empty() && median(ages) < kMostMs) return 1e-6 * static_cast<double>(at - fromUs);
+        if (ages.empty() || median(ages) >= kMostMs) back = 1e-6 * static_cast<double>(at + kWindowUs - fromUs);
     }
-    return 1e-6 * static_cast<double>(toUs - fromUs);
+    return back;
 }
 
 int modeOfLevels(const std::vector<Arrival>& frames, std::uint64_t fromUs, std::uint64_t toUs) {
@@ -83,7 +85,7 @@ Report ladder(const ScenarioOptions& options) {
     report.shown("level at 20 MB/s", first, "");
     for (const std::size_t i : {1u, 2u}) {
         const std::string step = std::string("down to ") + kPhases[i].name + ": ";
-        report.atMost(step + "running median age back under 150 ms after", backUnderS(watched.frames, starts[i], starts[i + 1]), kAfterDownS, "s");
+        report.atMost(step + "running median age back under 150 ms after", backUnderS(watched.frames, starts[i]), kAfterDownS, "s");
         report.atMost(step + "median age from 2 s after it on",
                       median(agesMs(watched.frames, starts[i] + static_cast<std::uint64_t>(1e6 * kAfterDownS), starts[i + 1])), kMostMs, "ms");
         report.shown(step + "level most of the time", modeOfLevels(watched.frames, starts[i] + 2'000'000, starts[i + 1]), "");

@@ -47,6 +47,24 @@ std::string damagedText(std::string text, Dice& dice) {
     return text;
 }
 
+std::string damagedValues(const std::string& text, Dice& dice) {
+    using protocol::Json;
+    static const std::vector<Json> kStrange = {nullptr, -1,          0,  1.5, 1e300,         -1e-300, 4294967296, 9007199254740992, "", "x", std::string(300, 'n'), true,
+                                               Json::array(), Json::object(), {1, 2, 3}, {"E"}, {"builtin", "gem"}, 512, {nullptr}, Json::array({1e308, 1e308, 1e308})};
+    const Json whole = Json::parse(text);
+    const Json flat = whole.flatten();
+    Json damaged = whole;
+    for (std::size_t hits = 1 + dice.below(2); hits > 0; --hits) {
+        auto leaf = flat.begin();
+        std::advance(leaf, static_cast<std::ptrdiff_t>(dice.below(flat.size())));
+        try {
+            damaged[Json::json_pointer(leaf.key())] = kStrange[dice.below(kStrange.size())];
+        } catch (const Json::exception&) {   // the first hit took the place of the second
+        }
+    }
+    return damaged.dump();
+}
+
 std::string damagedBytes(std::string bytes, Dice& dice) {
     constexpr std::array<std::uint32_t, 6> kNumbers = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x00040001};
     for (std::size_t hits = 1 + dice.below(3); hits > 0; --hits) {

@@ -18,6 +18,7 @@ class Dice {
 };
 
 std::string damagedText(std::string text, Dice& dice);     // one to three places of a JSON message
+std::string damagedValues(const std::string& text, Dice& dice);   // JSON as before, one or two values strange
 std::string damagedBytes(std::string bytes, Dice& dice);   // bits, lengths, truncation, repetition
 std::string damagedGlb(const std::string& glb, Dice& dice);   // its header, its JSON or its geometry, lengths often put right again
 

@@ -112,6 +112,21 @@ class Visitor {
     std::uint64_t nextSalt_ = std::uint64_t{dice_.below(0xffffffff)} << 20;
 };
 
+// Every scene in every way once, so that what is made once is there before anything is compared.
+void warmUp(int port) {
+    RawClient client(port);
+    client.hello();
+    for (const char* scene : kScenes) {
+        for (const char* mode : {"refined", "traced", "auto"}) {
+            Json document = plainDocument(false, 128);
+            document["scene"] = {"builtin", scene};
+            document["transport"]["mode"] = mode;
+            client.update(document);
+            for (const bool still : {false, true}) client.requestFrame(still, still);
+        }
+    }
+}
+
 struct Resources {
     double residentMib = 0, descriptors = 0, glObjects = 0;
 };
@@ -148,6 +163,7 @@ Report soak(const ScenarioOptions& options) {
     const ServerChild server(options.server, {"--gpu", options.gpu, "--max-sessions", "16"});   // who leaves may not be gone yet
     const auto lengthUs = static_cast<std::uint64_t>(minutes * 60e6);
     const auto firstUs = static_cast<std::uint64_t>(kFirstShare * static_cast<double>(lengthUs));
+    warmUp(server.port());
     Counts counts;
     const std::uint64_t start = nowUs();
     std::vector<std::pair<std::uint64_t, double>> residentMib;

@@ -155,6 +155,9 @@ Message RawClient::next(int ms) {
         const std::uint8_t piece = byte(0) & 0x0f;
         final = byte(0) & 0x80;
         if (piece >= 0x9) {  // ping, pong
+            if (piece == 0x9) {
+                send(0xa, std::string_view(received_).substr(head, size));
+            }
             received_.erase(0, head + size);
             final = false;
             continue;

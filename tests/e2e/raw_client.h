@@ -47,7 +47,7 @@ class RawClient {
     void send(std::uint8_t opcode, std::string_view payload, bool final = true);
     void bytes(std::string_view raw);  // straight into the socket
 
-    // The next message within `ms`, pings aside.
+    // The next message within `ms`; a ping on the way is answered.
     Message next(int ms = 60'000);
 
     // hello with a welcome and the first `state`; fields of `extra` go into the hello.
