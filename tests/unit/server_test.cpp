@@ -125,6 +125,27 @@ TEST_F(SchedulerTest, ARequestNeedsNoStreamAndShowsItsOwnMoment) {
     EXPECT_FALSE(scheduler_.request(1, 1, false, false, 3000)) << "patience has an end";
 }
 
+TEST_F(SchedulerTest, WhatIsShownOrAskedForKeepsItsGeometry) {
+    const auto of = [](const std::shared_ptr<scene::Geometry>& geometry) {
+        auto lit = std::make_shared<scene::Scene>();
+        lit->geometry = geometry;
+        auto view = std::make_shared<View>();
+        view->request.scene = lit;
+        return Shown{.view = std::move(view), .rev = 1, .changedUs = 1000};
+    };
+    const auto first = std::make_shared<scene::Geometry>(), second = std::make_shared<scene::Geometry>();
+    scheduler_.add(1);
+    scheduler_.show(1, of(first));
+    EXPECT_THAT(scheduler_.geometryShown(), ElementsAre(first.get()));
+    scheduler_.request(1, 9, false, false, 1000);
+    scheduler_.show(1, of(second));
+    EXPECT_THAT(scheduler_.geometryShown(), ElementsAre(second.get(), first.get())) << "a frame of the first is still to be drawn";
+    ASSERT_TRUE(next(1000));
+    EXPECT_THAT(scheduler_.geometryShown(), ElementsAre(second.get()));
+    scheduler_.remove(1);
+    EXPECT_THAT(scheduler_.geometryShown(), ElementsAre());
+}
+
 TEST_F(SchedulerTest, TheGpuIsSharedByTimeNotByFrames) {
     streaming(1, 1000);
     streaming(2, 1000);
