@@ -1,6 +1,8 @@
 #include "net/websocket_server.h"
 
 #include <arpa/inet.h>
+#include <linux/tcp.h>
+#include <openssl/ssl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,6 +16,7 @@
 #include "log.h"
 #include "net/http_exchange.h"
 #include "protocol/messages.h"
+#include "session/clock.h"
 
 static_assert(caustream::stream::kSocketHeadroom >= LWS_PRE, "libwebsockets writes its framing before the payload");
 
@@ -22,9 +25,13 @@ namespace {
 
 constexpr std::size_t kReceiveBytes = 64u << 10;  // per read: larger than the default, as chunks are
 constexpr std::size_t kSendBytes = 4u << 20;      // per write: below it every frame goes out in one piece, uncopied
-constexpr unsigned kMaxSockets = 256;             // sessions, the page's requests, and those that have not said hello yet
+constexpr unsigned kOwnDescriptors = 16;          // libwebsockets' own, beside the sockets
 constexpr int kTickUs = 250'000;
 constexpr int kCloseS = 5;  // for the far side to take what is left before its socket is dropped
+constexpr std::size_t kMostDropped = 1u << 20;    // bytes read of who was told off, before reading ends
+constexpr std::size_t kCostOfDrop = 64;           // bytes that a message counts for there beside its own
+// Pieces that a message may come in, and one more for so many of its bytes: fragments and TCP segments, not letters.
+constexpr std::size_t kMostPieces = 64, kBytesPerPiece = 256;
 
 // Fails with the system's own words where libwebsockets would only say that it could not.
 void probePort(const ServerOptions& options) {
@@ -56,6 +63,40 @@ void logLine(int level, const char* text) {
     (level & LLL_ERR ? log::warning("libwebsockets") : log::debug("libwebsockets")).with("message", line);
 }
 
+// How much of what was sent the far side's TCP has acknowledged: stands still when nobody reads there.
+std::uint64_t ackedBytes(lws* socket) {
+    tcp_info info{};
+    socklen_t size = sizeof info;
+    getsockopt(lws_get_socket_fd(socket), IPPROTO_TCP, TCP_INFO, &info, &size);
+    return info.tcpi_bytes_acked;
+}
+
+// Whether a list of subprotocols, as the header has it, holds ours.
+bool namesUs(std::string_view list) {
+    while (!list.empty()) {
+        const std::size_t comma = std::min(list.find(','), list.size());
+        std::string_view name = list.substr(0, comma);
+        name.remove_prefix(std::min(name.find_first_not_of(" \t"), name.size()));
+        name = name.substr(0, name.find_last_not_of(" \t") + 1);
+        if (name == protocol::kSubprotocol) {
+            return true;
+        }
+        list.remove_prefix(std::min(comma + 1, list.size()));
+    }
+    return false;
+}
+
+void kill(lws* socket) { lws_set_timeout(socket, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC); }
+
+void addTls(lws_context_creation_info& info, const ServerOptions& options) {
+    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+    // Plain http on this port gets an answer that says so, and nothing else: refuse().
+    info.options |= LWS_SERVER_OPTION_ALLOW_NON_SSL_ON_SSL_PORT | LWS_SERVER_OPTION_ALLOW_HTTP_ON_HTTPS_LISTENER;
+    info.ssl_cert_filepath = options.tlsCert.c_str();
+    info.ssl_private_key_filepath = options.tlsKey.c_str();
+    info.ssl_options_set = SSL_OP_NO_SSLv3 | SSL_OP_NO_TLSv1 | SSL_OP_NO_TLSv1_1 | SSL_OP_NO_COMPRESSION | SSL_OP_NO_RENEGOTIATION;
+}
+
 }  // namespace
 
 struct WebSocketServer::Timer {
@@ -65,7 +106,7 @@ struct WebSocketServer::Timer {
     static void fire(lws_sorted_usec_list_t* entry) {
         Timer* timer = reinterpret_cast<Timer*>(entry);  // entry is the first member
         try {
-            timer->server->endpoint_.tick();
+            timer->server->tick();
         } catch (const std::exception& problem) {
             log::error("tick").with("message", problem.what());
         }
@@ -89,26 +130,39 @@ struct WebSocketServer::Callbacks {
         }
     }
 
+    // After a step of an exchange that gave `result`: when it was the last, another request may follow.
+    static int going(lws* socket, const HttpExchange* exchange, int result) {
+        if (result == 0 && !exchange->body) {
+            server(socket).sockets_.answered(socket, session::nowUs());
+        }
+        return result;
+    }
+
     static int http(lws* socket, lws_callback_reasons reason, void* user, void* in, std::size_t length) {
         HttpExchange* exchange = static_cast<HttpExchange*>(user);
         switch (reason) {
+            case LWS_CALLBACK_FILTER_NETWORK_CONNECTION:
+                return server(socket).sockets_.admits(static_cast<const lws_filter_network_conn_args*>(user)->cli_addr) ? 0 : -1;
+            case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+                return guarded([&] { return server(socket).sockets_.opened(socket, session::nowUs()), 0; });
+            case LWS_CALLBACK_WSI_DESTROY: server(socket).sockets_.closed(socket); return 0;
             case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
                 return guarded([&] { return server(socket).runPosted(), 0; });
-            case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:  // an upgrade that does not name our subprotocol
-                lws_return_http_status(socket, 400, "Sec-WebSocket-Protocol must be caustream.v1");
-                return -1;
+            case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION: return -1;  // "http" is no subprotocol, though libwebsockets knows it
             case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
                 return guarded([&] { return server(socket).refuse(socket, true); });
             case LWS_CALLBACK_HTTP:
                 return guarded([&] {
+                    server(socket).sockets_.asked(socket, session::nowUs());
                     if (const int refused = server(socket).refuse(socket, false)) {
                         return refused;
                     }
                     const HttpRequest request{std::string(static_cast<const char*>(in)),
                                               requestHeader(socket, WSI_TOKEN_HTTP_IF_NONE_MATCH)};
-                    return respond(socket, exchange, server(socket).endpoint_.http(request));
+                    return going(socket, exchange, respond(socket, exchange, server(socket).endpoint_.http(request)));
                 });
-            case LWS_CALLBACK_HTTP_WRITEABLE: return guarded([&] { return writeBody(socket, exchange); });
+            case LWS_CALLBACK_HTTP_WRITEABLE:
+                return guarded([&] { return going(socket, exchange, writeBody(socket, exchange)); });
             case LWS_CALLBACK_CLOSED_HTTP:
             case LWS_CALLBACK_HTTP_DROP_PROTOCOL: endExchange(exchange); return 0;
             default: return lws_callback_http_dummy(socket, reason, user, in, length);
@@ -121,7 +175,7 @@ struct WebSocketServer::Callbacks {
             case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
                 return guarded([&] {
                     const std::string path = requestHeader(socket, WSI_TOKEN_GET_URI);
-                    const bool page = sameHost(requestHeader(socket, WSI_TOKEN_ORIGIN), requestHeader(socket, WSI_TOKEN_HOST));
+                    const bool page = server(socket).allows(socket);
                     if (path == "/ws" && page) {
                         return 0;
                     }
@@ -130,8 +184,11 @@ struct WebSocketServer::Callbacks {
                 });
             case LWS_CALLBACK_ESTABLISHED:
                 return guarded([&] {
-                    *slot = new Connection(socket, server(socket).nextConnection_++);
-                    server(socket).endpoint_.opened(**slot);
+                    WebSocketServer& port = server(socket);
+                    *slot = new Connection(socket, port.nextConnection_++);
+                    port.connections_.insert(*slot);
+                    port.sockets_.upgraded(socket);
+                    port.endpoint_.opened(**slot);
                     return 0;
                 });
             case LWS_CALLBACK_RECEIVE:
@@ -145,6 +202,7 @@ struct WebSocketServer::Callbacks {
             case LWS_CALLBACK_CLOSED:
                 if (slot && *slot) {
                     guarded([&] { return server(socket).endpoint_.closed(**slot), 0; });
+                    server(socket).connections_.erase(*slot);
                     delete std::exchange(*slot, nullptr);
                 }
                 return 0;
@@ -154,7 +212,10 @@ struct WebSocketServer::Callbacks {
     }
 };
 
-void Connection::requestWrite() { lws_callback_on_writable(socket_); }
+void Connection::requestWrite() {
+    waiting_ = true;
+    lws_callback_on_writable(socket_);
+}
 
 void Connection::close(std::uint16_t code, std::string reason) {
     if (closing()) {
@@ -163,12 +224,12 @@ void Connection::close(std::uint16_t code, std::string reason) {
     closeCode_ = code;
     closeReason_ = std::move(reason);
     partial_.clear();
-    lws_set_timeout(socket_, PENDING_TIMEOUT_CLOSE_SEND, kCloseS);
+    closeByUs_ = session::nowUs() + kCloseS * 1'000'000ull;
     requestWrite();
 }
 
 WebSocketServer::WebSocketServer(const ServerOptions& options, Endpoint& endpoint)
-    : options_(options), endpoint_(endpoint), timer_(std::make_unique<Timer>()) {
+    : options_(options), endpoint_(endpoint), sockets_(options.maxConnections, options.maxPerAddress), timer_(std::make_unique<Timer>()) {
     probePort(options_);
     lws_set_log_level(LLL_ERR | LLL_WARN, logLine);
 
@@ -187,13 +248,16 @@ WebSocketServer::WebSocketServer(const ServerOptions& options, Endpoint& endpoin
     info.alpn = "http/1.1";
     info.pt_serv_buf_size = kReceiveBytes;
     info.max_http_header_data = 16384;
-    info.fd_limit_per_thread = kMaxSockets;
+    info.fd_limit_per_thread = static_cast<unsigned>(options_.maxConnections) + kOwnDescriptors;
     info.retry_and_idle_policy = &retry;
     info.user = this;
     info.gid = static_cast<gid_t>(-1);
     info.uid = static_cast<uid_t>(-1);
     info.options = LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_DISABLE_IPV6 |
                    LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+    if (!options_.tlsCert.empty()) {
+        addTls(info, options_);
+    }
     context_ = lws_create_context(&info);
     lws_vhost* vhost = context_ ? lws_create_vhost(context_, &info) : nullptr;
     if (!vhost) {
@@ -201,7 +265,8 @@ WebSocketServer::WebSocketServer(const ServerOptions& options, Endpoint& endpoin
             lws_context_destroy(context_);
         }
         throw Error("network; libwebsockets cannot listen on " + options_.bind + ":" + std::to_string(options_.port) +
-                    "; pass --port 0 for a free port");
+                    (options_.tlsCert.empty() ? "; pass --port 0 for a free port"
+                                              : "; check that --tls-cert and --tls-key are PEM files that belong together"));
     }
     port_ = lws_get_vhost_listen_port(vhost);
     timer_->server = this;
@@ -249,19 +314,76 @@ void WebSocketServer::runPosted() {
     }
 }
 
+void WebSocketServer::tick() {
+    endLate(session::nowUs());
+    endpoint_.tick();
+}
+
+void WebSocketServer::endLate(std::uint64_t nowUs) {
+    for (lws* socket : sockets_.overdue(nowUs)) {
+        ++counts_.slow;
+        kill(socket);
+        sockets_.upgraded(socket);  // counted once; it goes in a moment
+    }
+    for (Connection* connection : connections_) {
+        if (connection->closing() && nowUs > connection->closeByUs_) {
+            kill(connection->socket_);
+            continue;
+        }
+        const std::uint64_t acked = ackedBytes(connection->socket_);
+        if (!connection->waiting_ || std::exchange(connection->ackedBytes_, acked) != acked) {
+            connection->movedUs_ = nowUs;
+        } else if (nowUs - connection->movedUs_ > static_cast<std::uint64_t>(options_.deadS) * 1'000'000 && !connection->closing()) {
+            ++counts_.stuck;
+            log::info("stuck").with("connection", connection->id()).with("dead_s", options_.deadS);
+            connection->closeByUs_ = nowUs;
+            connection->closeCode_ = static_cast<std::uint16_t>(protocol::CloseCode::Timeout);
+            kill(connection->socket_);
+        }
+    }
+}
+
+SocketCounts WebSocketServer::counts() const {
+    SocketCounts counts = counts_;
+    counts.open = sockets_.size();
+    counts.refused = sockets_.refused();
+    return counts;
+}
+
+// Of a connection that was told to go: read and forgotten so that it can still say goodbye, but not for ever.
+void WebSocketServer::drop(Connection& connection, std::size_t bytes) {
+    const bool flooded = connection.dropped_ > kMostDropped;
+    connection.dropped_ += bytes + kCostOfDrop;
+    if (!flooded && connection.dropped_ > kMostDropped) {
+        ++counts_.flooding;
+        lws_rx_flow_control(connection.socket_, 0);
+    }
+}
+
+bool WebSocketServer::allows(lws* socket) const {
+    const std::string origin = requestHeader(socket, WSI_TOKEN_ORIGIN);
+    return sameHost(origin, requestHeader(socket, WSI_TOKEN_HOST)) || std::ranges::find(options_.allowedOrigins, origin) != options_.allowedOrigins.end();
+}
+
 bool WebSocketServer::receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final,
                               std::size_t remaining) {
     if (connection.closing()) {
+        drop(connection, piece.size());
         return true;
     }
     if (first) {
         connection.partial_.clear();
+        connection.pieces_ = 0;
     }
     // Memory follows the bytes that came, but a message that will not fit is refused at its first piece.
     const std::size_t limit = binary ? options_.maxBinaryBytes : options_.maxTextBytes;
     if (connection.partial_.size() + piece.size() + remaining > limit) {
         connection.close(static_cast<std::uint16_t>(protocol::CloseCode::TooLarge),
                          "a message may hold " + std::to_string(limit) + " bytes");
+        return true;
+    }
+    if (++connection.pieces_ > kMostPieces + (connection.partial_.size() + piece.size()) / kBytesPerPiece) {
+        connection.close(static_cast<std::uint16_t>(protocol::CloseCode::Busy), "a message in too many pieces");
         return true;
     }
     const bool whole = final && remaining == 0;
@@ -289,6 +411,7 @@ int WebSocketServer::write(Connection& connection) {
         return 0;
     }
     if (!connection.closing()) {
+        connection.waiting_ = false;
         return 0;
     }
     std::string& reason = connection.closeReason_;
@@ -299,8 +422,16 @@ int WebSocketServer::write(Connection& connection) {
 }
 
 int WebSocketServer::refuse(lws* socket, bool upgrade) const {
+    if (!options_.tlsCert.empty() && !lws_is_ssl(socket)) {
+        lws_return_http_status(socket, 400, "This port speaks TLS: https:// and wss://");
+        return -1;
+    }
     if (upgrade && requestHeader(socket, WSI_TOKEN_UPGRADE) != "websocket") {  // h2c would open the HTTP/2 code
         lws_return_http_status(socket, 400, "Upgrade must be websocket");
+        return -1;
+    }
+    if (upgrade && !namesUs(requestHeader(socket, WSI_TOKEN_PROTOCOL))) {
+        lws_return_http_status(socket, 400, "Sec-WebSocket-Protocol must be caustream.v1");
         return -1;
     }
     if (options_.checkHost && !isLocalName(requestHeader(socket, WSI_TOKEN_HOST))) {

@@ -6,11 +6,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "net/http.h"
+#include "net/socket_table.h"
 #include "session/outbox.h"
 
 struct lws;
@@ -49,9 +51,15 @@ class Connection {
     friend class WebSocketServer;
     lws* socket_;
     std::uint64_t id_;
-    std::string partial_;  // of a message that arrives in pieces
+    std::string partial_;      // of a message that arrives in pieces
+    std::size_t pieces_ = 0;   // of that message, so far
     std::uint16_t closeCode_ = 0;
     std::string closeReason_;
+    std::uint64_t closeByUs_ = 0;   // the socket goes then, whatever the far side does
+    std::size_t dropped_ = 0;       // bytes that came after close()
+    bool waiting_ = false;          // for the socket to take something
+    std::uint64_t ackedBytes_ = 0;  // by the far side's TCP,
+    std::uint64_t movedUs_ = 0;     // and when that last grew, or nothing waited
 };
 
 struct ServerOptions {
@@ -59,16 +67,29 @@ struct ServerOptions {
     int port = 0;  // 0: any free one
     std::size_t maxTextBytes = 64u << 10, maxBinaryBytes = 1u << 20;
     int pingS = 15, deadS = 30;
+    std::string tlsCert, tlsKey;               // PEM files; empty: plain http
+    std::vector<std::string> allowedOrigins;   // of pages besides our own
+    std::size_t maxConnections = 256, maxPerAddress = 64;  // sockets, those of plain HTTP too
     bool checkHost = true;  // only this machine's own names in Host: a page elsewhere cannot rebind its name to us
+};
+
+// What the port had to do about others' sockets, since the start.
+struct SocketCounts {
+    std::size_t open = 0;
+    std::uint64_t refused = 0;   // too many, in all or from one address
+    std::uint64_t slow = 0;      // closed: a request's head or an answer took too long
+    std::uint64_t stuck = 0;     // closed: took nothing while something waited
+    std::uint64_t flooding = 0;  // closed: went on sending after it was told off
 };
 
 class WebSocketServer {
    public:
-    // Binds; throws Error when the port is taken or the address is not this machine's.
+    // Binds; throws Error when the port is taken, the address is not this machine's or the certificate does not load.
     WebSocketServer(const ServerOptions& options, Endpoint& endpoint);
     ~WebSocketServer();
 
     int port() const { return port_; }
+    SocketCounts counts() const;  // network thread
     void run();   // until stop()
     void stop();  // any thread
 
@@ -79,6 +100,10 @@ class WebSocketServer {
 
    private:
     void runPosted();
+    void tick();
+    void endLate(std::uint64_t nowUs);
+    void drop(Connection& connection, std::size_t bytes);
+    bool allows(lws* socket) const;
     bool receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final, std::size_t remaining);
     int write(Connection& connection);
     int refuse(lws* socket, bool upgrade) const;
@@ -88,6 +113,9 @@ class WebSocketServer {
     lws_context* context_ = nullptr;
     int port_ = 0;
     std::uint64_t nextConnection_ = 1;
+    SocketTable sockets_;
+    std::set<Connection*> connections_;
+    SocketCounts counts_;
 
     std::mutex mutex_;
     std::vector<std::function<void()>> posted_;  // guarded by mutex_

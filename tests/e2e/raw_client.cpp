@@ -18,6 +18,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+void sendAll(int descriptor, std::string_view data) {
+    while (!data.empty()) {
+        const ssize_t sent = ::send(descriptor, data.data(), data.size(), MSG_NOSIGNAL);
+        if (sent <= 0) {
+            return;  // the server has closed; next() will tell
+        }
+        data.remove_prefix(static_cast<std::size_t>(sent));
+    }
+}
+
+}  // namespace
+
 int connectTo(int port) {
     const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};
@@ -32,18 +44,6 @@ int connectTo(int port) {
     setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     return descriptor;
 }
-
-void sendAll(int descriptor, std::string_view data) {
-    while (!data.empty()) {
-        const ssize_t sent = ::send(descriptor, data.data(), data.size(), MSG_NOSIGNAL);
-        if (sent <= 0) {
-            return;  // the server has closed; next() will tell
-        }
-        data.remove_prefix(static_cast<std::size_t>(sent));
-    }
-}
-
-}  // namespace
 
 std::string httpGet(int port, std::string_view path, std::string_view extra) {
     const int descriptor = connectTo(port);
@@ -64,10 +64,11 @@ void sendRequest(int port, std::string_view request) {
     close(descriptor);
 }
 
-RawClient::RawClient(int port) : socket_(connectTo(port)) {
-    sendAll(socket_, "GET /ws HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+RawClient::RawClient(int port, std::string_view path, std::string_view extra) : socket_(connectTo(port)) {
+    sendAll(socket_, "GET " + std::string(path) + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
                          "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-                         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: caustream.v1\r\n\r\n");
+                         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: caustream.v1\r\n" +
+                         std::string(extra) + "\r\n");
     while (received_.find("\r\n\r\n") == std::string::npos) {
         if (!fill(60'000)) {
             throw std::runtime_error("no handshake: " + received_);

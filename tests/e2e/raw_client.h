@@ -27,6 +27,9 @@ struct Picture {
     std::vector<std::uint8_t> payload;
 };
 
+// A connected TCP socket of this machine; throws std::runtime_error when nobody listens.
+int connectTo(int port);
+
 // One HTTP exchange: the answer's head and body. `extra` holds more header lines, each with its \r\n.
 std::string httpGet(int port, std::string_view path, std::string_view extra = "");
 
@@ -35,8 +38,8 @@ void sendRequest(int port, std::string_view request);
 
 class RawClient {
    public:
-    // Connects and upgrades; throws std::runtime_error when the server will not have it.
-    explicit RawClient(int port);
+    // Connects and upgrades; throws std::runtime_error when the server will not have it. `extra` as httpGet()'s.
+    explicit RawClient(int port, std::string_view path = "/ws", std::string_view extra = "");
     ~RawClient();
     RawClient(const RawClient&) = delete;
     RawClient& operator=(const RawClient&) = delete;
@@ -46,6 +49,7 @@ class RawClient {
     void binary(std::span<const std::uint8_t> message);
     void send(std::uint8_t opcode, std::string_view payload, bool final = true);
     void bytes(std::string_view raw);  // straight into the socket
+    int descriptor() const { return socket_; }
 
     // The next message within `ms`; a ping on the way is answered.
     Message next(int ms = 60'000);
