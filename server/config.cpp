@@ -15,10 +15,11 @@ constexpr const char* kAbout = R"(Renders spectral caustics and streams them to 
   caustream-server --port 0              on any free port; the last line of output names it
   caustream-server --gpu list            show the GPUs there are
   caustream-server --bind 0.0.0.0 --token-file secret.txt   let other machines in, with a token
+  caustream-server --config caustream.toml      the same options from a file; flags win over it
   caustream-server --plan gem            say which passes this scene's frames run, and why; serve nothing
 
 Prints one line "ready http://..." on standard output once frames can be asked for; logs go to standard error.
-SIGTERM or Ctrl-C tells the viewers and ends.)";
+SIGTERM lets the viewers leave for another server, then ends; Ctrl-C ends at once.)";
 
 std::string readToken(const std::string& path) {
     std::ifstream file(path);
@@ -35,6 +36,66 @@ std::string readToken(const std::string& path) {
     return token;
 }
 
+bool loopback(const Config& config) { return config.bind.starts_with("127."); }
+
+void addNetworkOptions(CLI::App& app, Config& config) {
+    app.add_option("--tls-cert", config.tlsCert, "PEM file with the certificate and its chain: https and wss")
+        ->check(CLI::ExistingFile);
+    app.add_option("--tls-key", config.tlsKey, "PEM file with the certificate's private key")->check(CLI::ExistingFile);
+    app.add_option("--allow-origin", config.allowedOrigins,
+                   "https://HOST[:PORT] of a page that may connect besides the server's own; repeatable")
+        ->expected(1, -1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false);
+    app.add_option("--max-connections", config.maxConnections, "sockets at once, those of plain HTTP too")
+        ->check(CLI::Range(8, 10'000))->capture_default_str();
+    app.add_option("--max-per-address", config.maxPerAddress, "sockets of one address; raise it behind a proxy")
+        ->check(CLI::Range(1, 10'000))->capture_default_str();
+}
+
+void addOperationOptions(CLI::App& app, Config& config) {
+    app.add_option("--server-id", config.serverId, "this server's name in ?srv= and in welcome; random without")
+        ->check([](const std::string& id) {
+            const bool good = !id.empty() && id.size() <= 64 &&
+                              id.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") == std::string::npos;
+            return good ? "" : "a server id has 1 to 64 letters, digits, dots, dashes and underscores";
+        });
+    app.add_option("--drain-s", config.drainS, "seconds that viewers get to leave after SIGTERM")
+        ->check(CLI::Range(1, 3600))->capture_default_str();
+    app.add_option("--watchdog-s", config.watchdogS, "seconds that one frame may take before the program gives up")
+        ->check(CLI::Range(1, 3600))->capture_default_str();
+    app.add_option("--test-hang-after-frames", config.testHangAfterFrames)->group("")->configurable(false);
+    app.add_option("--test-lose-gpu-after-frames", config.testLoseGpuAfterFrames)->group("")->configurable(false);
+}
+
+void checkNetworkOptions(const Config& config) {
+    if (!loopback(config) && config.token.empty()) {
+        throw Error("command line; --bind " + config.bind + " lets other machines in; give --token-file, or stay on 127.0.0.1");
+    }
+    if (config.tlsCert.empty() != config.tlsKey.empty()) {
+        throw Error("command line; --tls-cert and --tls-key go together; give both, or neither for plain http");
+    }
+    for (const std::string& origin : config.allowedOrigins) {
+        const std::size_t scheme = origin.find("://");
+        if (scheme == std::string::npos || origin.find('/', scheme + 3) != std::string::npos || origin.size() == scheme + 3) {
+            throw Error("command line; --allow-origin " + origin + "; an origin is scheme, host and port, as https://example.org");
+        }
+    }
+}
+
+// CLI11's words for the same, which say neither where nor what to try.
+std::string sentence(const CLI::ParseError& problem, const CLI::Option& file) {
+    if (dynamic_cast<const CLI::ConfigError*>(&problem)) {
+        std::string text = problem.what();
+        if (const std::size_t key = text.find("parse "); key != std::string::npos) {
+            text = "it has no option \"" + text.substr(key + 6) + "\"";
+        }
+        const std::string path = file.count() > 0 ? file.as<std::string>() : "";
+        return "config file " + path + "; " + text + "; deploy/caustream.toml names all there are, --help explains them";
+    }
+    return std::string("command line; ") + problem.what() + "; try --help";
+}
+
 }  // namespace
 
 std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
@@ -42,6 +103,8 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     std::string level = "info", tokenFile;
     std::size_t viewerMb = 1024, assetCacheMb = 512, assetDirMb = 4096;
     CLI::App app(kAbout, "caustream-server");
+    const CLI::Option& file = *app.set_config("--config", "", "read options from this TOML file");
+    app.allow_config_extras(CLI::config_extras_mode::error);
     app.add_option("--port", config.port, "TCP port; 0 takes any free one")->check(CLI::Range(0, 65535))->capture_default_str();
     app.add_option("--bind", config.bind, "IPv4 address to listen on; another than loopback needs --token-file")->capture_default_str();
     app.add_option("--token-file", tokenFile, "file whose first line viewers must present");
@@ -66,19 +129,23 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     app.add_option("--test-frame-bytes", config.testFrameBytes, "send noise of so many bytes a frame instead of pictures: to measure links")
         ->check(CLI::Range(0, 64 << 20));
     app.add_option("--test-frame-ms", config.testFrameMs, "what drawing one of those takes")->check(CLI::Range(0, 10000));
-    app.add_option("--plan", config.planScene, "a scene or a GLB file: print what its frames run, leave out, and why");
+    addNetworkOptions(app, config);
+    addOperationOptions(app, config);
+    app.add_option("--plan", config.planScene, "a scene or a GLB file: print what its frames run, leave out, and why")
+        ->configurable(false);
     std::vector<std::string> settings;
     app.add_option("--set", settings, "with --plan: PATH=VALUE, a value of the state document; repeatable")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->configurable(false);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         std::cout << app.help();
         return std::nullopt;
     } catch (const CLI::ParseError& problem) {
-        throw Error(std::string("command line; ") + problem.what() + "; try --help");
+        throw Error(sentence(problem, file));
     }
     config.viewerBytes = viewerMb << 20;
     config.assetCacheBytes = assetCacheMb << 20;
@@ -101,9 +168,7 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     if (!tokenFile.empty()) {
         config.token = readToken(tokenFile);
     }
-    if (!config.bind.starts_with("127.") && config.token.empty()) {
-        throw Error("command line; --bind " + config.bind + " lets other machines in; give --token-file, or stay on 127.0.0.1");
-    }
+    checkNetworkOptions(config);
     return config;
 }
 

@@ -1,4 +1,4 @@
-// What the command line says.
+// What the command line and the file behind --config say; flags win.
 #pragma once
 #include <optional>
 #include <string>
@@ -25,6 +25,18 @@ struct Config {
     std::size_t assetDirBytes = 4096ull << 20;
     std::size_t testFrameBytes = 0;  // frames are that many bytes of noise instead of pictures; 0: pictures
     int testFrameMs = 0;             // and take this long to draw
+    std::string serverId;         // what ?srv= of the address names; empty: random
+
+    std::string tlsCert, tlsKey;  // PEM files; both or neither
+    std::vector<std::string> allowedOrigins;  // of pages besides the server's own, "https://host[:port]"
+    int maxConnections = 256;     // sockets in all, HTTP's too
+    int maxPerAddress = 64;       // of one address
+    int drainS = 20;              // from SIGTERM to the end, at most
+    int watchdogS = 30;           // a frame that takes longer ends the program
+
+    // Faults on purpose, for tests; 0: never.
+    int testHangAfterFrames = 0, testLoseGpuAfterFrames = 0;
+
     std::string planScene;        // print its plan instead of serving: a built-in scene's name or a GLB file
     std::vector<protocol::Setting> settings;  // of that scene's state document
 };

@@ -8,4 +8,9 @@ struct Error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// The GPU had no memory for it: perhaps for this picture, perhaps for any.
+struct OutOfMemory : Error {
+    using Error::Error;
+};
+
 }  // namespace caustream

@@ -7,10 +7,11 @@
 #include "gl/context.h"
 #include "plan_report.h"
 #include "service.h"
+#include "supervise.h"
 
 namespace {
 
-// Before any thread starts, so that all inherit it and only sigwait() sees these.
+// Before any thread starts, so that all inherit it and only supervise() sees these.
 sigset_t blockStopSignals() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -46,12 +47,10 @@ int main(int argc, char** argv) {
         const sigset_t stopSignals = blockStopSignals();
 
         caustream::Service service(*config);
-        std::printf("ready http://%s:%d/\n", config->bind.c_str(), service.port());
+        std::printf("ready %s://%s:%d/\n", config->tlsCert.empty() ? "http" : "https", config->bind.c_str(), service.port());
         std::fflush(stdout);
 
-        int signal = 0;
-        sigwait(&stopSignals, &signal);
-        caustream::log::info("stopping").with("signal", signal);
+        caustream::supervise(service, stopSignals, *config);
         return 0;
     } catch (const std::exception& problem) {
         std::fprintf(stderr, "caustream-server: %s\n", problem.what());

@@ -5,6 +5,7 @@
 #include <exception>
 #include <optional>
 
+#include "error.h"
 #include "gl/context.h"
 #include "gl/shader_library.h"
 #include "log.h"
@@ -15,6 +16,7 @@ namespace caustream {
 namespace {
 
 constexpr std::chrono::milliseconds kShaderPoll{100};  // only with --shader-dir, for who writes shaders
+constexpr int kMostOutOfMemory = 8;                    // frames in a row, not one of any viewer drawn in between
 constexpr int kEncoderThreads = 2;  // one still as PNG must not hold up another viewer's stream
 
 std::string hashText(std::uint64_t hash) {
@@ -164,14 +166,16 @@ void RenderThread::work(std::promise<void>& warm) {
 
 void RenderThread::serve(Gpu& gpu) {
     std::unique_lock lock(mutex_);
-    while (!stopping_) {
+    while (!stopping_ && !lost_) {
         std::uint64_t wakeUs = 0;
         const std::uint64_t now = session::nowUs();
         if (std::exchange(collecting_, false)) {   // before drawing: a server that always has something to draw collects, too
             std::erase_if(stills_, [this](const auto& still) { return !scheduler_.knows(still.first); });
             const std::vector<const scene::Geometry*> shown = scheduler_.geometryShown();
             lock.unlock();
+            busySinceUs_ = now;
             gpu.pipeline.collect(shown);
+            busySinceUs_ = 0;
             lock.lock();
         } else if (std::optional<FrameJob> job = scheduler_.next(now, wakeUs)) {
             lock.unlock();
@@ -197,13 +201,16 @@ void RenderThread::reloadShaders(Gpu& gpu) {
 
 void RenderThread::draw(Gpu& gpu, FrameJob job) {
     busySinceUs_ = job.startedUs;
+    failOnPurpose();
     std::string error;
+    bool outOfMemory = false;
     render::Frame frame;
     const auto still = stills_.find(job.session);
     if (testFrames_.wanted()) {
         stream::Encoded encoded;
         frame = testFrames_.draw(job, encoded);
         ++frames_;
+        notice(gpu, false);
         finish(job, frame);
         session::OutgoingFrame outgoing = outgoingFrame(job, frame, job.shown.view->encode, std::move(encoded));
         outgoing.header.flags |= protocol::kFrameTest;
@@ -221,12 +228,15 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
             }
             frame = gpu.pipeline.run(request);
             ++frames_;
+            ++(frame.stats.lightReused ? lightReuses_ : lightRuns_);
         } catch (const std::exception& problem) {
+            outOfMemory = dynamic_cast<const OutOfMemory*>(&problem);
             ++failures_;
             error = problem.what();
             log::error("render").with("message", error);
         }
     }
+    notice(gpu, outOfMemory);
     finish(job, frame);
     if (!error.empty()) {
         deliver_({std::move(job), {}, std::move(error)});
@@ -247,11 +257,30 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
 
 // Drawn or failed: whose time it was, and what its session waits for next.
 void RenderThread::finish(const FrameJob& job, const render::Frame& frame) {
-    renderMsTotal_ = renderMsTotal_ + frame.stats.renderMs;
     busySinceUs_ = 0;
     const std::lock_guard lock(mutex_);
     scheduler_.spent(job.session, session::nowUs() - job.startedUs);
     scheduler_.drawn(job, frame.stats.convergence);
+}
+
+// Whether there is a GPU left to draw with; the program's watchdog looks at lost().
+void RenderThread::notice(Gpu& gpu, bool outOfMemory) {
+    outOfMemory_ = outOfMemory ? outOfMemory_ + 1 : 0;
+    const auto purpose = static_cast<std::uint64_t>(config_.testLoseGpuAfterFrames);
+    if (gpu.context->lost()) {
+        lost_ = "the GPU was reset";
+    } else if (outOfMemory_ >= kMostOutOfMemory) {
+        lost_ = "the GPU has no memory for anyone's picture";
+    } else if (purpose > 0 && frames_ >= purpose) {
+        lost_ = "the GPU is lost, as --test-lose-gpu-after-frames asks";
+    }
+}
+
+void RenderThread::failOnPurpose() const {
+    const auto frames = static_cast<std::uint64_t>(config_.testHangAfterFrames);
+    while (frames > 0 && frames_ >= frames) {
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
 }
 
 }  // namespace caustream

@@ -45,9 +45,11 @@ class RenderThread {
 
     const std::string& gpuName() const { return gpuName_; }
     std::uint64_t busySinceUs() const { return busySinceUs_; }  // 0: idle
+    const char* lost() const { return lost_; }                  // why nothing can be drawn any more; nullptr: it can
     std::uint64_t frames() const { return frames_; }
     std::uint64_t failures() const { return failures_; }
-    double renderMsTotal() const { return renderMsTotal_; }
+    std::uint64_t lightRuns() const { return lightRuns_; }      // frames whose light was worked out
+    std::uint64_t lightReuses() const { return lightReuses_; }  // and those that found it done
 
    private:
     struct Gpu;
@@ -59,6 +61,8 @@ class RenderThread {
     void serve(Gpu& gpu);
     void reloadShaders(Gpu& gpu);  // with mutex_ held
     void draw(Gpu& gpu, FrameJob job);
+    void failOnPurpose() const;
+    void notice(Gpu& gpu, bool outOfMemory);
     void finish(const FrameJob& job, const render::Frame& frame);
 
     Config config_;
@@ -71,8 +75,9 @@ class RenderThread {
     bool stopping_ = false;   // guarded by mutex_
     bool collecting_ = false; // guarded by mutex_
 
-    std::atomic<std::uint64_t> busySinceUs_{0}, frames_{0}, failures_{0};
-    std::atomic<double> renderMsTotal_{0.0};
+    std::atomic<std::uint64_t> busySinceUs_{0}, frames_{0}, failures_{0}, lightRuns_{0}, lightReuses_{0};
+    std::atomic<const char*> lost_{nullptr};
+    int outOfMemory_ = 0;  // frames in a row, anyone's; render thread
 
     // Render thread: the newest still of each session that gets it once more, without loss.
     struct Still {

@@ -1,10 +1,9 @@
 #include "service.h"
 
-#include <sstream>
+#include <algorithm>
 #include <utility>
 
 #include "embedded/web.h"
-#include "gl/names.h"
 #include "log.h"
 #include "session/clock.h"
 #include "session/random_id.h"
@@ -12,8 +11,11 @@
 namespace caustream {
 namespace {
 
-constexpr std::uint64_t kDrainUs = 2'000'000;     // for the viewers to take their leave
-constexpr std::uint64_t kStuckUs = 20'000'000;    // one frame on the slowest software renderer takes less
+constexpr std::uint64_t kUsPerS = 1'000'000;
+constexpr int kEndS = 2;                              // for the viewers to take their leave where nobody drained before
+constexpr std::uint64_t kRoundUs = 250'000;           // between the network thread's rounds
+constexpr std::uint64_t kFarTooLateUs = 5 * kUsPerS;  // a round that late: connections time out meanwhile,
+constexpr std::uint64_t kLagShownUs = 10 * kUsPerS;   // and this long health says so
 
 net::ServerOptions serverOptions(const Config& config, const protocol::Limits& limits) {
     return {.bind = config.bind,
@@ -22,6 +24,11 @@ net::ServerOptions serverOptions(const Config& config, const protocol::Limits& l
             .maxBinaryBytes = limits.binaryBytes,
             .pingS = static_cast<int>(limits.pingS),
             .deadS = static_cast<int>(limits.deadS),
+            .tlsCert = config.tlsCert,
+            .tlsKey = config.tlsKey,
+            .allowedOrigins = config.allowedOrigins,
+            .maxConnections = static_cast<std::size_t>(config.maxConnections),
+            .maxPerAddress = static_cast<std::size_t>(config.maxPerAddress),
             .checkHost = config.token.empty()};
 }
 
@@ -44,7 +51,8 @@ auto shared(T&& value) {
 
 Service::Service(const Config& config)
     : config_(config),
-      desk_{.config = config_, .limits = limitsOf(config), .serverId = session::randomId()},
+      desk_{.config = config_, .limits = limitsOf(config), .serverId = config.serverId.empty() ? session::randomId() : config.serverId},
+      networkBeatUs_(session::nowUs()),
       server_(serverOptions(config_, desk_.limits), *this) {
     renderer_ = std::make_unique<RenderThread>(config_, [this](Delivery&& delivery) { deliver(std::move(delivery)); });
     desk_.renderer = renderer_.get();
@@ -71,12 +79,19 @@ Service::Service(const Config& config)
         const auto viewer = viewers_.find(key);
         return viewer == viewers_.end() ? nullptr : viewer->second.get();
     };
-    network_ = std::thread([this] { server_.run(); });
+    networkBeatUs_ = session::nowUs();
+    network_ = std::thread([this] {
+        server_.run();
+        ended_ = true;
+    });
+    if (!config.bind.starts_with("127.") && config.tlsCert.empty()) {
+        log::warning("bind").with("address", config.bind).with("message", "without TLS the token and the pictures go in the clear");
+    }
     log::info("ready").with("port", port()).with("gpu", renderer_->gpuName());
 }
 
 Service::~Service() {
-    server_.post([this] { drain(); });
+    drain(protocol::Goaway::Reason::Shutdown, kEndS);
     network_.join();
     viewers_.clear();
     renderer_.reset();
@@ -85,12 +100,14 @@ Service::~Service() {
 void Service::opened(net::Connection& connection) {
     auto viewer = std::make_unique<Viewer>(desk_, connection);
     if (desk_.draining) {
-        viewer->drain();
+        viewer->drain(protocol::Goaway::Reason::Drain);
     }
     viewers_.emplace(connection.id(), std::move(viewer));
 }
 
 void Service::received(net::Connection& connection, std::string_view message, bool binary) {
+    ++(binary ? desk_.counters.binaries : desk_.counters.texts);
+    desk_.counters.receivedBytes += message.size();
     viewers_.at(connection.id())->received(message, binary);
 }
 
@@ -104,7 +121,8 @@ void Service::closed(net::Connection& connection) {
     const session::Outbox& outbox = viewer->second->outbox();
     sentFrames_ += outbox.sent();
     sentBytes_ += outbox.sentBytes();
-    dropped_ += outbox.dropped();
+    replaced_ += outbox.drops().replaced;
+    outdated_ += outbox.drops().outdated;
     log::info("closed").with("connection", connection.id()).with("frames", outbox.sent()).with("dropped", outbox.dropped());
     viewer->second->end();
     viewers_.erase(viewer);
@@ -115,18 +133,35 @@ void Service::closed(net::Connection& connection) {
 
 void Service::tick() {
     const std::uint64_t now = session::nowUs();
+    const std::uint64_t late = now - std::min(now, networkBeatUs_.exchange(now) + kRoundUs);
+    desk_.counters.loopLag.Observe(static_cast<double>(late) * 1e-6);
+    if (late > kFarTooLateUs) {
+        laggedUs_ = now;
+        log::warning("lag").with("ms", late / 1000);
+    }
     for (const auto& [key, viewer] : viewers_) {
         viewer->tick(now);
     }
     desk_.kept.sweep(now);
     desk_.scenes.trim();
     renderer_->collect();
-    if (desk_.draining && now - drainSinceUs_ > kDrainUs) {
+    if (!desk_.draining) {
+        return;
+    }
+    if (now > endUs_ || viewers_.empty()) {
         server_.stop();
+    } else if (now + kEndS * kUsPerS > endUs_) {
+        for (const auto& [key, viewer] : viewers_) {
+            viewer->leave();
+        }
     }
 }
 
 void Service::deliver(Delivery&& delivery) {
+    if (delivery.error.empty()) {
+        desk_.counters.render.Observe(delivery.frame.header.renderUs * 1e-6);
+        desk_.counters.encode.Observe(delivery.frame.header.encodeUs * 1e-6);
+    }
     server_.post([this, carried = shared(std::move(delivery))] {
         if (Viewer* viewer = desk_.find(carried->job.session)) {
             viewer->deliver(std::move(*carried));
@@ -134,20 +169,66 @@ void Service::deliver(Delivery&& delivery) {
     });
 }
 
-void Service::drain() {
+void Service::drain(protocol::Goaway::Reason reason, int seconds) {
+    if (!draining_.exchange(true)) {
+        server_.post([this, reason, seconds] { startDraining(reason, seconds); });
+    }
+}
+
+void Service::startDraining(protocol::Goaway::Reason reason, int seconds) {
     desk_.draining = true;
-    drainSinceUs_ = session::nowUs();
+    endUs_ = session::nowUs() + static_cast<std::uint64_t>(seconds) * kUsPerS;
+    log::info("draining").with("viewers", viewers_.size()).with("seconds", seconds);
     for (const auto& [key, viewer] : viewers_) {
-        viewer->drain();
+        viewer->drain(reason);
     }
     if (viewers_.empty()) {
         server_.stop();
     }
 }
 
-bool Service::healthy() const {
-    const std::uint64_t busySince = renderer_->busySinceUs();
-    return busySince == 0 || session::nowUs() - busySince < kStuckUs;
+std::optional<std::string> Service::failure() const {
+    const std::uint64_t now = session::nowUs(), most = static_cast<std::uint64_t>(config_.watchdogS) * kUsPerS;
+    const auto tooLong = [&](std::uint64_t sinceUs) { return now > sinceUs && now - sinceUs > most; };
+    if (const char* lost = renderer_->lost()) {
+        return lost;
+    }
+    if (const std::uint64_t busySince = renderer_->busySinceUs(); busySince != 0 && tooLong(busySince)) {
+        return "one frame has taken longer than " + std::to_string(config_.watchdogS) + " s";
+    }
+    if (tooLong(networkBeatUs_) && !ended_) {
+        return "the network thread has stood still for " + std::to_string(config_.watchdogS) + " s";
+    }
+    return std::nullopt;
+}
+
+void Service::fail(const std::string& why) {
+    log::error("failed").with("message", why);
+    failed_ = true;
+    server_.post([this, why] { tellFailure(why); });
+}
+
+void Service::tellFailure(const std::string& why) {
+    const bool lost = renderer_->lost();
+    for (const auto& [key, viewer] : viewers_) {
+        viewer->say({protocol::Status::Level::Error, "gpu", why + "; the server ends, another may take over"});
+        if (lost) {
+            viewer->fail({.code = protocol::ErrorCode::GpuError, .message = why});
+        }
+    }
+}
+
+net::HttpResponse Service::health() const {
+    if (failed_) {
+        return {.status = 503, .body = "failed\n"};
+    }
+    if (const auto why = failure()) {
+        return {.status = 503, .body = *why + "\n"};
+    }
+    if (laggedUs_ != 0 && session::nowUs() - laggedUs_ < kLagShownUs) {
+        return {.status = 503, .body = "the network thread is late\n"};
+    }
+    return draining_ ? net::HttpResponse{.status = 404, .body = "draining\n"} : net::HttpResponse{.body = "ok\n"};
 }
 
 net::HttpResponse Service::http(const net::HttpRequest& request) {
@@ -155,49 +236,16 @@ net::HttpResponse Service::http(const net::HttpRequest& request) {
         return {.body = "ok\n"};
     }
     if (request.path == "/readyz") {
-        const bool free = !desk_.draining && desk_.sessions < desk_.limits.sessions;
+        const bool free = !draining_ && !failed_ && desk_.sessions < desk_.limits.sessions;
         return {.status = free ? 200 : 503, .body = free ? "ready\n" : "no free session\n"};
     }
     if (request.path == "/healthz") {
-        return desk_.draining ? net::HttpResponse{.status = 404, .body = "draining\n"}
-               : healthy()    ? net::HttpResponse{.body = "ok\n"}
-                              : net::HttpResponse{.status = 503, .body = "the renderer does not answer\n"};
+        return health();
     }
     if (request.path == "/metrics") {
         return {.contentType = "text/plain; version=0.0.4; charset=utf-8", .body = metrics()};
     }
     return net::pageFile(embedded::web(), request);
-}
-
-std::string Service::metrics() const {
-    std::uint64_t frames = sentFrames_, bytes = sentBytes_, dropped = dropped_;
-    for (const auto& [key, viewer] : viewers_) {
-        frames += viewer->outbox().sent();
-        bytes += viewer->outbox().sentBytes();
-        dropped += viewer->outbox().dropped();
-    }
-    std::string gpu;
-    for (const char c : renderer_->gpuName()) {
-        gpu += (c == '"' || c == '\\') ? "\\" : "";
-        gpu += c;
-    }
-    std::ostringstream text;
-    const auto metric = [&](const char* name, const char* type, const char* help, auto value, const std::string& labels = "") {
-        text << "# HELP caustream_" << name << ' ' << help << "\n# TYPE caustream_" << name << ' ' << type << "\ncaustream_"
-             << name << labels << ' ' << value << '\n';
-    };
-    metric("gpu_info", "gauge", "The renderer in use.", 1, "{renderer=\"" + gpu + "\"}");
-    metric("gl_objects", "gauge", "Textures, buffers, programs and the like that the renderer holds.", gl::liveObjects.load());
-    metric("connections", "gauge", "Open WebSockets.", viewers_.size());
-    metric("sessions", "gauge", "Viewers that said hello.", desk_.sessions);
-    metric("frames_rendered_total", "counter", "Frames drawn.", renderer_->frames());
-    metric("render_failures_total", "counter", "Frames the GPU refused.", renderer_->failures());
-    metric("render_seconds_total", "counter", "Time spent drawing.", renderer_->renderMsTotal() * 1e-3);
-    metric("frames_sent_total", "counter", "Frames handed to sockets.", frames);
-    metric("frames_dropped_total", "counter", "Frames replaced before they left.", dropped);
-    metric("sent_bytes_total", "counter", "Bytes of frames handed to sockets.", bytes);
-    metric("refused_messages_total", "counter", "Messages answered with an error.", desk_.refusedMessages);
-    return text.str();
 }
 
 }  // namespace caustream

@@ -22,6 +22,7 @@ using protocol::ErrorCode;
 constexpr std::uint64_t kUsPerS = 1'000'000;
 constexpr std::uint64_t kStatsEveryUs = kUsPerS, kConvergingStatsEveryUs = kUsPerS / 5;
 constexpr std::uint32_t kRetryMs = 2000;
+constexpr std::uint32_t kReconnectMs = 1000;                // a load balancer's check has noticed by then
 constexpr double kChunksPerS = 2000;                        // credit bounds the bytes, this the smallest of chunks
 constexpr std::size_t kMaxDeferredBytes = 4u << 20;         // while a scene loads
 constexpr std::size_t kMaxWaitingTextBytes = 16u << 20;     // for a client that talks and does not read
@@ -155,8 +156,12 @@ void Viewer::on(const protocol::Ack& ack) {
         refuse(problem(ErrorCode::OutOfRange, "no frame of this number was sent", "seq"));
         return;
     }
+    if (outbox_.ageMs() > 0.0) {
+        desk_.counters.frameAge.Observe(outbox_.ageMs() * 1e-3);
+    }
     updateOccupied();
     connection_.requestWrite();
+    endIfIdle();
 }
 
 void Viewer::on(const protocol::Record& record) {
@@ -237,6 +242,7 @@ void Viewer::tick(std::uint64_t nowUs) {
     }
     rest(nowUs);
     sendStats(nowUs);
+    endIfIdle();
 }
 
 // What waits for a picture to converge wants to see it come nearer, and that it is there.
@@ -252,10 +258,25 @@ void Viewer::sendStats(std::uint64_t nowUs) {
     }
 }
 
-void Viewer::drain() {
-    send(protocol::Goaway{protocol::Goaway::Reason::Shutdown, 500, 500});
-    connection_.close(static_cast<std::uint16_t>(CloseCode::GoingAway), "the server ends");
+void Viewer::drain(protocol::Goaway::Reason reason) {
+    if (connection_.closing()) {
+        return;
+    }
+    draining_ = true;
+    send(protocol::Goaway{reason, kReconnectMs, kReconnectMs});
+    if (ready_) {
+        desk_.renderer->schedule([this](Scheduler& scheduler) { scheduler.setStreaming(connection_.id(), false); });
+    }
+    endIfIdle();
 }
+
+void Viewer::endIfIdle() {
+    if (draining_ && !loading_ && requestsPending_ == 0 && outbox_.answersWaiting() == 0 && outbox_.occupied() == 0) {
+        leave();
+    }
+}
+
+void Viewer::leave() { connection_.close(static_cast<std::uint16_t>(CloseCode::GoingAway), "the server ends"); }
 
 void Viewer::ok(std::uint32_t id) {
     protocol::Ok message{.id = id};
@@ -264,14 +285,14 @@ void Viewer::ok(std::uint32_t id) {
 }
 
 void Viewer::refuse(const DecodeError& error, std::optional<std::uint32_t> retryMs) {
-    ++desk_.refusedMessages;
+    ++desk_.counters.errors[error.code];
     protocol::ErrorMessage message = protocol::errorMessage(error);
     message.retryMs = retryMs;
     send(message);
 }
 
 void Viewer::fail(const DecodeError& error) {
-    ++desk_.refusedMessages;
+    ++desk_.counters.errors[error.code];
     protocol::ErrorMessage message = protocol::errorMessage(error, true);
     if (error.code == ErrorCode::Busy || error.code == ErrorCode::RateLimited) {
         message.retryMs = kRetryMs;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "config.h"
+#include "counters.h"
 #include "net/websocket_server.h"
 #include "protocol/messages.h"
 #include "render_thread.h"
@@ -44,7 +45,7 @@ struct Desk {
     session::SessionRegistry kept;                          // sessions without a connection
     std::uint32_t sessions = 0;                             // that have said hello
     bool draining = false;
-    std::uint64_t refusedMessages = 0;
+    Counters counters;
 };
 
 class Viewer {
@@ -56,8 +57,16 @@ class Viewer {
     std::optional<session::Outgoing> next();
     void deliver(Delivery&& delivery);
     void tick(std::uint64_t nowUs);
-    void drain();
     void end();  // the connection is gone: its session waits for who comes back
+
+    // Says goodbye; the connection closes once nothing is on its way to the viewer any more.
+    void drain(protocol::Goaway::Reason reason);
+    void leave();  // closes now, whatever is on its way
+    void say(const protocol::Status& status) { send(status); }
+    void fail(const protocol::DecodeError& error);  // and close
+
+    bool ready() const { return ready_; }
+    bool streaming() const { return streaming_; }
 
     const session::Session* session() const { return ready_ ? &*session_ : nullptr; }
     const session::Outbox& outbox() const { return outbox_; }
@@ -125,8 +134,8 @@ class Viewer {
     }
     void ok(std::uint32_t id);
     void refuse(const protocol::DecodeError& error, std::optional<std::uint32_t> retryMs = {});
-    void fail(const protocol::DecodeError& error);  // and close
     void sendState();
+    void endIfIdle();
     void setStreaming(std::uint32_t id, bool streaming);
     void updateOccupied();
     void tell(Scheduler& scheduler) const;
@@ -142,6 +151,7 @@ class Viewer {
     std::string followProblem_;  // as last told
     bool toldLate_ = false;   // what it follows has changed, and no `state` has said so
     bool ready_ = false;    // welcomed, and known to the scheduler
+    bool draining_ = false;
     bool loading_ = false;  // messages wait in deferred_, so that they apply in order
     std::deque<std::pair<std::string, bool>> deferred_;
     std::size_t deferredBytes_ = 0;

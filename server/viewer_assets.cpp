@@ -186,6 +186,7 @@ void Viewer::assetLoaded(std::uint32_t id, const std::string& sha256, Loaded res
     if (!scene) {
         scene = desk_.scenes.put(ref, std::move(*result));
     }
+    ++desk_.counters.uploads;
     reportAsset(id, sha256, *scene);
 }
 

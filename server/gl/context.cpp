@@ -64,10 +64,10 @@ class EglContext final : public Context {
         EGLConfig config = nullptr;
         EGLint count = 0;
         if (!eglChooseConfig(display_, configAttributes, &config, 1, &count) || count < 1) config = EGL_NO_CONFIG_KHR;
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+        const std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
                                      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                      EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE, EGL_NONE};
-        context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes);
+        context_ = createContext(config, attributes);
         if (context_ == EGL_NO_CONTEXT) throw Error("no OpenGL 4.5 core context");
         makeCurrent();
         const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -89,10 +89,19 @@ class EglContext final : public Context {
             throw Error("EGL refuses a context without a surface");
         }
     }
+    bool lost() override { return glGetGraphicsResetStatus() != GL_NO_ERROR; }
     void release() override { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
     void warn(std::string text) { warning_ = std::move(text); }
 
    private:
+    // One that tells when the GPU was reset, where the driver can: a software renderer has nothing to reset.
+    EGLContext createContext(EGLConfig config, std::vector<EGLint> attributes) const {
+        std::vector<EGLint> telling = {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET};
+        telling.insert(telling.end(), attributes.begin(), attributes.end());
+        const EGLContext context = eglCreateContext(display_, config, EGL_NO_CONTEXT, telling.data());
+        return context != EGL_NO_CONTEXT ? context : eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes.data());
+    }
+
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLContext context_ = EGL_NO_CONTEXT;
 };

@@ -29,6 +29,7 @@ class Context {
 
     virtual void makeCurrent() = 0;      // on the calling thread
     virtual void release() = 0;          // so that another thread can take it
+    virtual bool lost() = 0;             // the GPU was reset: nothing of this context can be used any more
 
     const std::string& renderer() const { return renderer_; }   // GL_RENDERER
     bool software() const { return software_; }

@@ -156,6 +156,7 @@ struct FrameStats {
     std::string choice;                     // what budgetMs or targetError chose, and why; empty: not asked
     std::uint32_t photons = 0;              // traced for the map that this frame shows, times no wavelengths
     double renderMs = 0.0;
+    bool lightReused = false;               // the light's side was there: it is as for a frame before, whoever's that was
     double exposureEv = 0.0;                // the one used
     std::vector<std::string> warnings;
 };

@@ -141,6 +141,7 @@ struct Pipeline::Impl {
 
     std::vector<std::unique_ptr<SceneEntry>> scenes;
     std::list<LightEntry> lights;              // newest first
+    bool lightReused = false;                  // by the frame that is being drawn
     gl::Texture output;
     gl::Buffer planes;
     Calibration calibration;
@@ -267,7 +268,8 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
         return LightSide::Inputs{*request.scene, entry.gpu, entry.tracer, light, transport, plan, entry.enclosure, request.wavelengthBands,
                                  request.still, request.countResiduals, request.observer, request.forced};
     };
-    if (facts.lightCached && !again) {
+    lightReused = facts.lightCached && !again;
+    if (lightReused) {
         lights.splice(lights.begin(), lights, found);
         LightMaps& maps = found->maps;
         conclude(maps);
@@ -473,6 +475,7 @@ Frame Pipeline::run(const Request& asked) {
         frame.stats.convergence->progress = std::min(frame.stats.convergence->progress, picture);
     }
     frame.stats.photons = maps.photons;
+    frame.stats.lightReused = impl.lightReused;
     frame.stats.warnings.insert(frame.stats.warnings.end(), maps.warnings.begin(), maps.warnings.end());
     frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     if (!request.still && !request.wavelengthBands && !request.countResiduals && transport.mode == Mode::Refined) {
@@ -480,7 +483,7 @@ Frame Pipeline::run(const Request& asked) {
         impl.calibration.learnCost(transport, frame.stats, traced);
         if (traced && maps.error) impl.calibration.learnError(scene.geometry.get(), transport, *maps.error, maps.photons);
     }
-    if (glGetError() == GL_OUT_OF_MEMORY) throw Error("the GPU is out of memory; ask for a smaller picture, map or photon grid");
+    if (glGetError() == GL_OUT_OF_MEMORY) throw OutOfMemory("the GPU is out of memory; ask for a smaller picture, map or photon grid");
     return frame;
 }
 

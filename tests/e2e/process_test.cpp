@@ -41,7 +41,7 @@ TEST(Process, SaysReadyAndEndsCleanly) {
     EXPECT_EQ(ended.exitCode, 0) << ended.err;
     const auto goaway = viewer.textOf("goaway", 5000);
     ASSERT_TRUE(goaway);
-    EXPECT_EQ((*goaway)["reason"], "shutdown");
+    EXPECT_EQ((*goaway)["reason"], "drain");
     EXPECT_EQ(viewer.next().closeCode, 1001);
 }
 
@@ -129,7 +129,7 @@ TEST(Process, HttpPages) {
     EXPECT_THAT(httpGet(server.port(), "/readyz"), StartsWith("HTTP/1.1 200"));
     const std::string metrics = httpGet(server.port(), "/metrics");
     EXPECT_THAT(metrics, HasSubstr("caustream_sessions 0"));
-    EXPECT_THAT(metrics, HasSubstr("caustream_gpu_info{renderer="));
+    EXPECT_THAT(metrics, HasSubstr("caustream_build_info{version="));
 }
 
 TEST(Process, WhoMayUpgrade) {

@@ -67,7 +67,7 @@ bool drain(int out, int err, std::string& outText, std::string& errText, bool un
     return false;
 }
 
-int wait(pid_t pid) {
+int exitCodeOf(pid_t pid) {
     int status = 0;
     waitpid(pid, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
@@ -81,7 +81,7 @@ Ended runServer(const std::vector<std::string>& arguments) {
     if (drain(started.out, started.err, ended.out, ended.err, false)) {
         kill(started.pid, SIGKILL);
     }
-    ended.exitCode = wait(started.pid);
+    ended.exitCode = exitCodeOf(started.pid);
     close(started.out);
     close(started.err);
     return ended;
@@ -95,7 +95,7 @@ ServerProcess::ServerProcess(std::vector<std::string> arguments) {
     err_ = started.err;
     drain(out_, err_, ready_, errText_, true);
     const std::size_t colon = ready_.rfind(':');
-    if (!ready_.starts_with("ready http://") || colon == std::string::npos) {
+    if (!ready_.starts_with("ready http") || colon == std::string::npos) {
         const Ended ended = stop();
         throw std::runtime_error("the server did not start: " + ended.out + ended.err);
     }
@@ -105,15 +105,21 @@ ServerProcess::ServerProcess(std::vector<std::string> arguments) {
 ServerProcess::~ServerProcess() { stop(); }
 
 Ended ServerProcess::stop() {
+    if (pid_ != 0) {
+        kill(pid_, SIGTERM);
+    }
+    return wait();
+}
+
+Ended ServerProcess::wait() {
     if (pid_ == 0) {
         return {};
     }
-    kill(pid_, SIGTERM);
     Ended ended{.out = ready_, .err = errText_};
     if (drain(out_, err_, ended.out, ended.err, false)) {
         kill(pid_, SIGKILL);
     }
-    ended.exitCode = wait(std::exchange(pid_, 0));
+    ended.exitCode = exitCodeOf(std::exchange(pid_, 0));
     close(out_);
     close(err_);
     return ended;

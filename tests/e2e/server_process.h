@@ -23,8 +23,11 @@ class ServerProcess {
 
     int port() const { return port_; }
     const std::string& readyLine() const { return ready_; }
+    pid_t pid() const { return pid_; }
 
-    // SIGTERM, then everything it said.
+    // Waits for its end, then everything it said. Killed if it does not end in a minute.
+    Ended wait();
+    // SIGTERM first.
     Ended stop();
 
    private:

@@ -7,7 +7,7 @@ cd "${1:-$(dirname "$0")/../..}"
 # is one of server/ itself. "embedded" is made by cmake/Embed.cmake.
 rules='
 protocol          | protocol/
-server            | error.h log.h config.h plan_report.h service.h scheduler.h viewer.h render_thread.h resolve_request.h embedded/ optics/ scene/ gl/ render/ stream/ session/ net/ protocol/
+server            | error.h log.h config.h counters.h metrics_text.h notify.h plan_report.h supervise.h service.h test_frames.h scheduler.h viewer.h render_thread.h resolve_request.h embedded/ optics/ scene/ gl/ render/ stream/ session/ net/ protocol/
 server/optics     | optics/
 server/scene      | scene/ optics/ embedded/
 server/gl         | gl/ error.h embedded/
