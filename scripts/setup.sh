@@ -10,8 +10,8 @@ packages=(
     glmark2-data
 )
 # What only the tests need: a display without a screen, mouse events, a browser, a client in another language, a compiler with
-# libFuzzer and its symbols, certificates, a load balancer.
-test_packages=(xvfb xdotool chromium ca-certificates python3 python3-websockets clang libclang-rt-14-dev llvm openssl haproxy)
+# libFuzzer and its symbols, certificates, a load balancer, systemd to check its unit with.
+test_packages=(xvfb xdotool chromium ca-certificates python3 python3-websockets clang libclang-rt-14-dev llvm openssl haproxy systemd)
 promtool="$(dirname "$0")/../build/tools/promtool"   # out of a package whose other half is a daemon
 
 missing() {

@@ -82,6 +82,16 @@ TEST(Operation, TheExampleNamesEveryOption) {
     EXPECT_EQ(named, known);
 }
 
+TEST(Operation, TheUnitIsOneThatSystemdTakes) {
+    std::stringstream text;
+    text << std::ifstream(CAUSTREAM_DEPLOY "/caustream.service").rdbuf();
+    const std::string program = "/usr/bin/caustream-server";
+    std::string unit = text.str();
+    ASSERT_NE(unit.find("ExecStart=" + program), std::string::npos);
+    unit.replace(unit.find(program), program.size(), CAUSTREAM_SERVER);
+    EXPECT_EQ(std::system(("systemd-analyze verify --man=no " + temporary("caustream.service", unit)).c_str()), 0);
+}
+
 TEST(Operation, MetricsAreWhatPrometheusReads) {
     ServerProcess server;
     RawClient viewer(server.port());

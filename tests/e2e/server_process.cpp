@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <stdexcept>
@@ -88,7 +89,9 @@ Ended runServer(const std::vector<std::string>& arguments) {
 }
 
 ServerProcess::ServerProcess(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"--port", "0"});
+    if (std::ranges::find(arguments, "--port") == arguments.end()) {
+        arguments.insert(arguments.begin(), {"--port", "0"});
+    }
     const Started started = start(arguments);
     pid_ = started.pid;
     out_ = started.out;
