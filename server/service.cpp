@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint64_t kUsPerS = 1'000'000;
 constexpr int kEndS = 2;                              // for the viewers to take their leave where nobody drained before
+constexpr std::uint64_t kNoticeUs = kUsPerS;          // for a load balancer's check to see that this server drains
 constexpr std::uint64_t kRoundUs = 250'000;           // between the network thread's rounds
 constexpr std::uint64_t kFarTooLateUs = 5 * kUsPerS;  // a round that late: connections time out meanwhile,
 constexpr std::uint64_t kLagShownUs = 10 * kUsPerS;   // and this long health says so
@@ -148,6 +149,9 @@ void Service::tick() {
     if (!desk_.draining) {
         return;
     }
+    if (now > farewellUs_) {
+        sayFarewell(protocol::Goaway::Reason::Drain);
+    }
     if (now > endUs_ || viewers_.empty()) {
         server_.stop();
     } else if (now + kEndS * kUsPerS > endUs_) {
@@ -179,11 +183,19 @@ void Service::startDraining(protocol::Goaway::Reason reason, int seconds) {
     desk_.draining = true;
     endUs_ = session::nowUs() + static_cast<std::uint64_t>(seconds) * kUsPerS;
     log::info("draining").with("viewers", viewers_.size()).with("seconds", seconds);
-    for (const auto& [key, viewer] : viewers_) {
-        viewer->drain(reason);
-    }
     if (viewers_.empty()) {
         server_.stop();
+    } else if (reason == protocol::Goaway::Reason::Drain) {
+        farewellUs_ = session::nowUs() + kNoticeUs;  // frames go on until then
+    } else {
+        sayFarewell(reason);
+    }
+}
+
+void Service::sayFarewell(protocol::Goaway::Reason reason) {
+    farewellUs_ = ~std::uint64_t{0};
+    for (const auto& [key, viewer] : viewers_) {
+        viewer->drain(reason);
     }
 }
 

@@ -43,6 +43,7 @@ class Service final : private net::Endpoint {
 
     void deliver(Delivery&& delivery);  // any thread
     void startDraining(protocol::Goaway::Reason reason, int seconds);
+    void sayFarewell(protocol::Goaway::Reason reason);
     void tellFailure(const std::string& why);
     net::HttpResponse health() const;
     std::string metrics() const;
@@ -51,7 +52,7 @@ class Service final : private net::Endpoint {
     Desk desk_;                                            // network thread
     std::map<SessionKey, std::unique_ptr<Viewer>> viewers_;  // network thread
     std::uint64_t sentFrames_ = 0, sentBytes_ = 0, replaced_ = 0, outdated_ = 0;  // of viewers that have gone; network thread
-    std::uint64_t endUs_ = 0;                              // of draining; network thread
+    std::uint64_t farewellUs_ = 0, endUs_ = 0;             // of draining: when viewers are told, when it is over; network thread
     std::uint64_t laggedUs_ = 0;                           // when a round was last far too late; network thread
 
     std::atomic<std::uint64_t> networkBeatUs_;             // the network thread's last round

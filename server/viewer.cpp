@@ -22,7 +22,7 @@ using protocol::ErrorCode;
 constexpr std::uint64_t kUsPerS = 1'000'000;
 constexpr std::uint64_t kStatsEveryUs = kUsPerS, kConvergingStatsEveryUs = kUsPerS / 5;
 constexpr std::uint32_t kRetryMs = 2000;
-constexpr std::uint32_t kReconnectMs = 1000;                // a load balancer's check has noticed by then
+constexpr std::uint32_t kReconnectMs = 50, kJitterMs = 450; // so that the next server is not met by all at once
 constexpr double kChunksPerS = 2000;                        // credit bounds the bytes, this the smallest of chunks
 constexpr std::size_t kMaxDeferredBytes = 4u << 20;         // while a scene loads
 constexpr std::size_t kMaxWaitingTextBytes = 16u << 20;     // for a client that talks and does not read
@@ -263,7 +263,7 @@ void Viewer::drain(protocol::Goaway::Reason reason) {
         return;
     }
     draining_ = true;
-    send(protocol::Goaway{reason, kReconnectMs, kReconnectMs});
+    send(protocol::Goaway{reason, kReconnectMs, kJitterMs});
     if (ready_) {
         desk_.renderer->schedule([this](Scheduler& scheduler) { scheduler.setStreaming(connection_.id(), false); });
     }

@@ -57,6 +57,7 @@ Json LastingViewer::camera(int pose) const {
 void LastingViewer::live() {
     bool farewell = true;
     while (!leaving_) {
+        pause_ = kRetry + number_ * 10ms;
         try {
             const std::string wish = farewell ? "" : "?srv=" + server();
             farewell = true;  // a server that cannot be reached is not asked for twice
@@ -66,7 +67,7 @@ void LastingViewer::live() {
         } catch (const std::exception&) {
             // No server just now, or gone in the middle of a word: the next one.
         }
-        std::this_thread::sleep_for(kRetry + number_ * 10ms);
+        std::this_thread::sleep_for(pause_);
     }
 }
 
@@ -139,6 +140,8 @@ bool LastingViewer::stay(RawClient& client) {
             }
         } else if (const Json text = Json::parse(message.text); text.value("op", "") == "goaway") {
             farewell = true;
+            const int jitterMs = text["jitter_ms"];
+            pause_ = std::chrono::milliseconds(static_cast<int>(text["reconnect_ms"]) + number_ * jitterMs / 12);
         } else if (text.value("op", "") == "error") {
             complain("the server says " + message.text);
         }

@@ -47,6 +47,7 @@ class LastingViewer {
     int pose_ = 0;
     std::string session_;
     std::uint32_t inputSeq_ = 0;
+    std::chrono::milliseconds pause_{};             // before the next connection
     std::array<std::optional<std::vector<std::uint8_t>>, kPoses> pictures_;  // of the first server that drew each
     std::atomic<int> frames_{0}, arrivals_{0};
     std::atomic<bool> leaving_{false};
