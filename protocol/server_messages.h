@@ -127,7 +127,7 @@ struct StreamInfo {  // before an epoch's first frame
     std::uint32_t width = 0, height = 0, bands = 3;
     std::vector<double> wavelengthsNm;
     std::array<double, 16> lightMatrix{};  // column-major, world -> map clip space
-    std::string unit;                      // "sRGB", "linear", "concentration"
+    std::string unit;                      // "sRGB", "linear", "concentration", "m", "normal", "caster"
     bool operator==(const StreamInfo&) const = default;
 };
 

@@ -154,6 +154,9 @@ protocol::StreamInfo streamInfo(const View& view, const render::Frame& frame, En
     std::copy_n(glm::value_ptr(frame.lightMatrix), info.lightMatrix.size(), info.lightMatrix.begin());
     info.unit = view.stream.target == Target::Spectral ? "concentration"
                 : frame.sample == render::Sample::U8   ? "sRGB"
+                : view.stream.pass == "depth"          ? "m"
+                : view.stream.pass == "normals"        ? "normal"
+                : view.stream.pass == "caster_mask"    ? "caster"
                                                        : "linear";
     return info;
 }

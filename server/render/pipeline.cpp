@@ -23,6 +23,7 @@
 #include "render/passes/planar_yuv.h"
 #include "render/passes/present.h"
 #include "render/read_back.h"
+#include "render/surface_labels.h"
 #include "render/thesis_light_side.h"
 #include "render/thesis_plan.h"
 #include "render/traced_light_side.h"
@@ -41,7 +42,8 @@ constexpr float kAutoKey = 0.8f;             // picture value of a white receive
 // Names of Target::Pass and what each shows.
 const std::vector<std::string> kPassNames = {"caster_layers",    "receiver_depth", "shadow",
                                              "map_resolve",      "outer_map",      "camera_receivers",
-                                             "camera_casters",   "dispersive_refraction", "camera_paths"};
+                                             "camera_casters",   "dispersive_refraction", "camera_paths",
+                                             "depth",            "normals",        "caster_mask"};
 
 // Everything that the light's side depends on, byte by byte; equal keys mean equal maps.
 class LightKey {
@@ -138,6 +140,7 @@ struct Pipeline::Impl {
     CameraSide cameraSide;
     Present present;
     PlanarYuv planarYuv;
+    SurfaceLabels labels;
 
     std::vector<std::unique_ptr<SceneEntry>> scenes;
     std::list<LightEntry> lights;              // newest first
@@ -153,7 +156,7 @@ struct Pipeline::Impl {
     std::list<Chosen> chosen;                  // newest first: what each scene and wish had last
 
     Impl(gl::Context& c, gl::ShaderLibrary& s)
-        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), tracedSide(s), gapFill(s), cameraSide(s), present(s), planarYuv(s) {
+        : context(c), shaders(s), timer(c.software()), lightSide(s), thesisSide(s), tracedSide(s), gapFill(s), cameraSide(s), present(s), planarYuv(s), labels(s) {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);   // reversed depth, see view.h
     }
 
@@ -164,6 +167,7 @@ struct Pipeline::Impl {
         return std::any_of(lights.begin(), lights.end(), [&](const LightEntry& e) { return e.key == lightPose; });
     }
     void picture(const Request& request, LightMaps& maps, float scale);
+    Frame label(const Request& request, const GpuScene& gpu, const View& view);
     void fillGaps(LightMaps& maps, bool tell);
     const gl::Texture& mapOf(LightMaps& maps, int size);
     void replaceMap(LightMaps& maps, const std::vector<float>& rgb);
@@ -343,6 +347,16 @@ void Pipeline::Impl::picture(const Request& request, LightMaps& maps, float scal
     present.run(in, request.width, request.height, linear ? GL_RGBA32F : GL_RGBA8, {output});
 }
 
+// What the camera sees first: no light is traced for it.
+Frame Pipeline::Impl::label(const Request& request, const GpuScene& gpu, const View& view) {
+    Frame frame;
+    frame.stats.plan = {{"first_surface", true, request.pass + " is shown alone", {}}};
+    labels.run(request, gpu, view, timer, present, output, frame);
+    if (frame.pixels.empty()) timer.stage("read_back", [&] { readImage(output, request.sample, frame); });
+    for (const auto& row : timer.rows()) frame.stats.stages.push_back({row.name, row.ms});
+    return frame;
+}
+
 Pipeline::Pipeline(gl::Context& context, gl::ShaderLibrary& shaders) : impl_(std::make_unique<Impl>(context, shaders)) {}
 Pipeline::~Pipeline() = default;
 
@@ -353,7 +367,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
     // Those for a light with a cookie and those of the published algorithm are compiled when one comes: few do.
     impl_->shaders.program("photon_list", {{"COOKIE", 0}});
     PhotonTrace::warmUp(impl_->shaders, impl_->context.software() ? kSoftwareNodes : layout::kMostNodes);
-    for (const char* stem : {"caster_layers", "receiver_depth"}) impl_->shaders.program(stem);
+    for (const char* stem : {"caster_layers", "receiver_depth", "first_surface"}) impl_->shaders.program(stem);
     MapResolve::warmUp(impl_->shaders);
     SpectralStep::warmUp(impl_->shaders);
     for (const int columns : {0, 1}) impl_->shaders.program("gap_fill", {{"COLUMNS", columns}});
@@ -389,6 +403,11 @@ Frame Pipeline::run(const Request& asked) {
     const scene::Scene& scene = *asked.scene;
     SceneEntry& entry = impl.sceneEntry(scene);
     const View view = cameraView(asked.camera, scene, asked.width, asked.height);
+    if (isLabel(asked)) {
+        Frame frame = impl.label(asked, entry.gpu, view);
+        frame.stats.renderMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        return frame;
+    }
     const int key = keyLight(scene);
     ModeChoice mode = chooseMode(asked, entry.casters);
     Request wanted = asked;

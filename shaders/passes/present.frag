@@ -31,8 +31,12 @@ vec3 shown(ivec2 at) {
     return value.w > 0.0 ? clamp(0.5 + 0.5 * value.xyz, 0.0, 1.0) : vec3(0.0);
 #elif MODE == 3
     return layerColour(u_depthImage ? value.r : value.w);
-#else
+#elif MODE == 4
     return logColour(value.rgb * u_scale);
+#elif MODE == 5
+    return distanceColour(value.w, u_scale);
+#else
+    return labelColour(value.r);
 #endif
 }
 

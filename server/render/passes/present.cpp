@@ -5,7 +5,7 @@
 namespace caustream::render {
 
 namespace {
-constexpr int kModes = 5;
+constexpr int kModes = 7;
 
 std::vector<gl::Flag> flags(int mode, bool downsample, bool fade = false, bool resized = false) {
     return {{"MODE", mode}, {"DOWNSAMPLE", downsample}, {"FADE", fade}, {"RESIZED", fade && resized}};

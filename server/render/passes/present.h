@@ -16,11 +16,13 @@ class Present {
         Normals,   // xyz in -1..1 of a layer -> colour; empty texels black
         Layer,     // w of a layer or the red of a depth image: near bright, far dim, nothing black
         Map,       // rgb concentration on a log scale, 1 at mid grey
+        Distance,  // w, a distance: mid grey at `scale`, brighter before it, darker behind, nothing black
+        Label,     // red, a number from 1 on: a colour of its own; 0 black
     };
     struct Inputs {
         GLuint image = 0;          // linear; rows bottom to top
         Mode mode = Mode::Picture;
-        float scale = 1.0f;        // Picture: 2^EV; Linear: unit of the output; Map: multiplies first
+        float scale = 1.0f;        // Picture: 2^EV; Linear: unit of the output; Map: multiplies first; Distance: that is mid grey
         bool depthImage = false;   // Layer: the layer is in red (depth or R32F), not in w
         GLuint before = 0;         // Picture: the image that `image` takes the place of, or none
         bool resized = false;      // it has another size than `image`
