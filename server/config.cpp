@@ -129,6 +129,8 @@ std::optional<Config> parseCommandLine(int argc, const char* const* argv) {
     app.add_option("--test-frame-bytes", config.testFrameBytes, "send noise of so many bytes a frame instead of pictures: to measure links")
         ->check(CLI::Range(0, 64 << 20));
     app.add_option("--test-frame-ms", config.testFrameMs, "what drawing one of those takes")->check(CLI::Range(0, 10000));
+    app.add_option("--record-dir", config.recordDir, "folder for the logs of viewers that ask to be recorded; without it none is")
+        ->check(CLI::ExistingDirectory);
     addNetworkOptions(app, config);
     addOperationOptions(app, config);
     app.add_option("--plan", config.planScene, "a scene or a GLB file: print what its frames run, leave out, and why")

@@ -23,6 +23,7 @@ struct Config {
     std::size_t assetCacheBytes = 512u << 20;  // of scenes that no one shows
     std::string assetDir;            // where uploaded files are kept, for other servers too; empty: nowhere
     std::size_t assetDirBytes = 4096ull << 20;
+    std::string recordDir;        // where viewers may have their sessions recorded; empty: nowhere
     std::size_t testFrameBytes = 0;  // frames are that many bytes of noise instead of pictures; 0: pictures
     int testFrameMs = 0;             // and take this long to draw
     std::string serverId;         // what ?srv= of the address names; empty: random

@@ -143,6 +143,7 @@ void Viewer::on(const protocol::FrameRequest& request) {
     });
     if (taken) {
         ++requestsPending_;
+        noteRequest(request);
     } else if (taken.error().retryMs > 0) {
         refuse(problem(ErrorCode::Busy, "this viewer's " + std::to_string(desk_.limits.gpuMsPerS) + " ms of GPU time a second are used up", {}, request.id),
                taken.error().retryMs);
@@ -162,10 +163,6 @@ void Viewer::on(const protocol::Ack& ack) {
     updateOccupied();
     connection_.requestWrite();
     endIfIdle();
-}
-
-void Viewer::on(const protocol::Record& record) {
-    refuse(problem(ErrorCode::Unsupported, "this server records nothing", "op", record.id));
 }
 
 void Viewer::on(const protocol::Ping& ping) { send(protocol::Pong{ping.tUs, session::nowUs()}); }
@@ -204,6 +201,7 @@ void Viewer::deliver(Delivery&& delivery) {
     if (!delivery.error.empty()) {
         refuse(problem(ErrorCode::GpuError, delivery.error, {}, job.requestId));
     } else if (job.requestId) {
+        noteAnswer(*job.requestId, delivery.frame);
         outbox_.requested(std::move(delivery.frame));
     } else {
         stale = job.resting() && desk_.renderer->schedule([&](Scheduler& scheduler) { return scheduler.outdated(job); });

@@ -20,6 +20,7 @@
 #include "session/asset_upload.h"
 #include "session/load_pool.h"
 #include "session/outbox.h"
+#include "session/recorder.h"
 #include "session/scene_store.h"
 #include "session/session.h"
 #include "session/session_registry.h"
@@ -99,6 +100,12 @@ class Viewer {
     void on(const protocol::Ping& ping);
     void chunk(std::string_view message);
 
+    // viewer_record.cpp: for the session's log, where it is kept
+    void noteChange(const protocol::Json& patch, const std::optional<protocol::Input>& input);
+    void noteRequest(const protocol::FrameRequest& request);
+    void noteAnswer(std::uint32_t requestId, const session::OutgoingFrame& frame);
+    void note(protocol::Json line);
+
     bool admit(const protocol::Hello& hello);
     std::optional<session::Kept> takeUp(const protocol::Resume& resume);
     session::Kept handOver();
@@ -166,6 +173,7 @@ class Viewer {
     int loads_ = 0;              // files being read, or waiting for it
     bool tellsProgress_ = false;
 
+    std::optional<session::Recorder> recorder_;
     std::uint32_t requestsPending_ = 0;
     bool streaming_ = false, wantsStats_ = false, readsPng_ = false;
     std::uint64_t statsSentUs_ = 0;

@@ -118,7 +118,11 @@ std::optional<DecodeError> Viewer::finish(protocol::Applied applied, std::shared
     if (!proposal) {
         return proposal.error();
     }
-    return show(std::move(*proposal), change.input);
+    auto error = show(std::move(*proposal), change.input);
+    if (!error) {
+        noteChange(change.patch, change.input);
+    }
+    return error;
 }
 
 // What is wrong with it, or nothing: then it is the session's state, and what the renderer draws next.

@@ -184,6 +184,9 @@ void Viewer::welcome(std::uint32_t id, std::vector<std::string> missingAssets) {
     message.rev = session_->rev();
     message.state = session_->document();
     message.caps = {"jpeg", "png", "raw", "zstd", "shuffle", "f16", "f32", "resume", "follow", "ladder"};
+    if (!desk_.config.recordDir.empty()) {
+        message.caps.emplace_back("record");
+    }
     for (const scene::BuiltinScene& builtin : scene::builtinScenes()) {
         message.scenes.emplace_back(builtin.name);
     }
