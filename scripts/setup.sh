@@ -6,7 +6,7 @@ packages=(
     build-essential cmake ninja-build ccache pkg-config
     libegl-dev libepoxy-dev libgl-dev libgl1-mesa-dri libglm-dev libglfw3-dev libimgui-dev
     libwebsockets-dev libturbojpeg0-dev libpng-dev libtinygltf-dev nlohmann-json3-dev libcli11-dev
-    libexpected-dev libembree-dev libgtest-dev libgmock-dev libssl-dev zlib1g-dev libzstd-dev prometheus-cpp-dev
+    libexpected-dev libembree-dev libopenexr-dev libgtest-dev libgmock-dev libssl-dev zlib1g-dev libzstd-dev prometheus-cpp-dev
     glmark2-data
 )
 # What only the tests need: a display without a screen, mouse events, a browser, a client in another language, a compiler with

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 namespace caustream::shot {
 namespace {
@@ -15,9 +16,12 @@ constexpr const char* kExamples = R"(Examples:
                  --set 'camera.exposure=["ev",9]' --out moved.png
   caustream-shot --url http://127.0.0.1:9720 --scene gem --moving --frames 60 --out last.jpg
   caustream-shot --url http://127.0.0.1:9720 --scene gem --converge --set transport.target_error=0.005 --out exact.png
+  caustream-shot --url http://127.0.0.1:9720 --scene gem --target depth --out depth.exr
+  caustream-shot --url http://127.0.0.1:9720 --batch poses.jsonl --target composite,depth,caster_mask --out set
+  caustream-shot --url http://127.0.0.1:9720 --replay logs/0123abcd-1.jsonl --out played
 
-The ending of FILE chooses the format: .png (8 bits, fetched lossless), .npy (float32, linear: the spectral map or the
-picture before exposure's curve), .jpg. A # in FILE becomes the frame's number; without it the last frame is kept.
+The ending of FILE chooses the format: .png (8 bits, fetched lossless), .npy and .exr (float32, linear: the spectral map or
+the picture before exposure's curve; of the targets depth, normals and caster_mask their numbers), .jpg. A # in FILE becomes the frame's number; without it the last frame is kept.
 FILE.json tells the rest: stream.info, the frame's header, statistics, the map's hash.
 
 --set takes any path of the state document, dotted or as a JSON Pointer (/lights/key.001/position), and a value in JSON:
@@ -33,6 +37,16 @@ traced enough of them, that is until the map's estimated error is under transpor
 fetches the picture then: seconds on a GPU, minutes without one. Half the error takes two to four times as long. What is not
 traced (mode "refined" or "thesis", or no light on any glass) has nothing to converge and comes at once.
 
+--batch draws a picture for each line of FILE, a JSON object each, into the folder --out:
+  {"name": "left", "patch": {"lights": {"key": {"position": [-1, 2, 0.5]}}}}
+  {"name": "prism", "patch": {"scene": ["builtin", "prism"]}, "targets": ["composite", "bands", "depth"], "converge": true}
+patch changes what --scene, --width, --height and --set show, as an update of the protocol would; each line starts from there.
+NAME.TARGET.png, .npy and .exr hold the pictures, NAME.json what is known of them, index.jsonl lists all. The same command
+again draws what is missing or was asked for otherwise. It exits with 0, with 2 where lines failed (it says which, and why),
+with 1 where it could not run. docs/batch.md has it all, and how to make such a file.
+
+--replay plays a log that a server wrote (its --record-dir), and tells in report.jsonl where a map is another than then.
+
 scripts/run.sh --shot FILE starts a server, takes the picture and stops the server.)";
 
 tl::expected<FileKind, std::string> kindOf(const std::string& file) {
@@ -40,8 +54,9 @@ tl::expected<FileKind, std::string> kindOf(const std::string& file) {
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".png") return FileKind::Png;
     if (ending == ".npy") return FileKind::Npy;
+    if (ending == ".exr") return FileKind::Exr;
     if (ending == ".jpg" || ending == ".jpeg") return FileKind::Jpeg;
-    return tl::make_unexpected("--out " + file + ": the ending chooses the format; use .png, .npy or .jpg");
+    return tl::make_unexpected("--out " + file + ": the ending chooses the format; use .png, .npy, .exr or .jpg");
 }
 
 }  // namespace
@@ -61,7 +76,8 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->allow_extra_args(false);
-    app.add_option("--target", options.target, "composite, spectral, or the name of a pass")->capture_default_str();
+    app.add_option("--target", options.target, "composite, spectral, depth, normals, caster_mask or the name of a pass; of a batch, several with commas, and bands")
+        ->capture_default_str();
     app.add_option("--width", options.width, "of the picture")->check(CLI::Range(16, 4096))->capture_default_str();
     app.add_option("--height", options.height, "of the picture")->check(CLI::Range(16, 4096))->capture_default_str();
     app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1, 100000))->capture_default_str();
@@ -71,7 +87,17 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
         ->check(CLI::Range(1, 3600))
         ->capture_default_str();
     app.add_option("--token", options.token, "the server's, where it asks for one");
-    app.add_option("--out", options.out, "the file: .png, .npy or .jpg")->required();
+    app.add_option("--out", options.out, "the file: .png, .npy, .exr or .jpg; of --batch and --replay a folder")->required();
+    std::string formats = "png,exr";
+    auto* batch = app.add_option("--batch", options.batch, "a file of lines to draw, each into files of its own")->check(CLI::ExistingFile);
+    app.add_option("--format", formats, "of a batch's files: png, npy, exr, parted by commas")->capture_default_str()->needs(batch);
+    app.add_option("--connections", options.connections, "that a batch goes over")->check(CLI::Range(1, 8))->capture_default_str()->needs(batch);
+    app.add_flag("--force", options.force, "draw a batch's lines whose files are there, too")->needs(batch);
+    auto* replay = app.add_option("--replay", options.replay, "a log to play, with a still after each input")->check(CLI::ExistingFile)->excludes(batch);
+    bool atInputs = true;
+    auto* every = app.add_option("--every", options.every, "a still after each so many inputs of the log")->check(CLI::Range(1, 1000000))->needs(replay);
+    app.add_flag("--at-inputs", atInputs, "a still after each input of the log: the default")->needs(replay)->excludes(every);
+    app.add_flag("--real-time", options.realTime, "with the pauses that the log had, instead of as fast as frames come")->needs(replay);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
@@ -84,9 +110,20 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     auto address = connection::parseAddress(url);
     if (!address) return wrong(address.error());
     options.address = std::move(*address);
-    auto kind = kindOf(options.out);
-    if (!kind) return wrong(kind.error());
-    options.kind = *kind;
+    auto parsed = parseFormats(formats);
+    if (!parsed) return wrong(parsed.error());
+    options.formats = std::move(*parsed);
+    if (!options.batch.empty() || !options.replay.empty()) {
+        if (options.moving || options.frames > 1) return wrong("--moving and --frames are for single shots");
+        options.targets.clear();
+        std::istringstream targets(options.target);
+        for (std::string target; std::getline(targets, target, ',');) options.targets.push_back(target);
+        options.target = "composite";
+    } else {
+        auto kind = kindOf(options.out);
+        if (!kind) return wrong(kind.error());
+        options.kind = *kind;
+    }
     for (const auto& text : settings) {
         auto setting = protocol::parseSetting(text);
         if (!setting) return wrong(setting.error());

@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "client/connection/address.h"
+#include "client/shot/line_job.h"
 #include "protocol/patch.h"
 
 namespace caustream::shot {
 
-enum class FileKind { Png, Npy, Jpeg };
+enum class FileKind { Png, Npy, Exr, Jpeg };
+
+inline constexpr int kShotJpegQuality = 95;
 
 struct Options {
     connection::Address address;
@@ -22,8 +25,18 @@ struct Options {
     bool converge = false;  // stream until nothing is left to gain
     int timeoutS = 120;   // for each thing that is waited for
     std::string token;
-    std::string out;
+    std::string out;        // a file; of a batch or a replay: a folder
     FileKind kind = FileKind::Png;
+
+    std::string batch;                               // a file of lines to draw; empty: one shot
+    std::vector<std::string> targets{"composite"};   // of lines that name none
+    std::vector<Format> formats;                     // of a batch's files
+    int connections = 1;
+    bool force = false;     // draw what is there already, too
+
+    std::string replay;     // a log to play; empty: none
+    int every = 1;          // a picture after each so many inputs
+    bool realTime = false;  // wait as long between inputs as there was
 };
 
 struct ParseEnd {  // nothing to run: help was asked for, or the arguments are wrong

@@ -1,5 +1,7 @@
-// How far a picture has converged, on standard error where that is a terminal; silent elsewhere.
+// How far a picture has converged or a batch has come, on standard error where that is a terminal; silent elsewhere.
 #pragma once
+#include <string>
+
 #include "protocol/server_messages.h"
 
 namespace caustream::shot {
@@ -11,6 +13,8 @@ class ProgressBar {
     ProgressBar(const ProgressBar&) = delete;
 
     void show(const protocol::Convergence& convergence);
+    void show(double share, const std::string& text);  // 0..1
+    void clear();                                      // for a line that is to stay
 
  private:
     bool terminal_, drawn_ = false;

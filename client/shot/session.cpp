@@ -4,8 +4,8 @@ namespace caustream::shot {
 
 using protocol::Json;
 
-Session::Session(connection::Options options, std::chrono::seconds timeout)
-    : address_(options.address.text()), timeout_(timeout), connection_(std::move(options)) {}
+Session::Session(connection::Options options, std::chrono::seconds timeout, const std::atomic<bool>* stop)
+    : address_(options.address.text()), timeout_(timeout), stop_(stop), connection_(std::move(options)) {}
 
 void Session::take(const connection::Event& event) {
     std::visit(
@@ -14,13 +14,17 @@ void Session::take(const connection::Event& event) {
                 welcome_ = value;
             } else if constexpr (std::is_same_v<T, protocol::Ok>) {
                 newestOk_ = std::max(newestOk_, value.id);
+                okRev_ = value.rev.value_or(okRev_);
                 if (value.report) report_ = value.report;
             } else if constexpr (std::is_same_v<T, protocol::ErrorMessage>) {
                 const std::string field = value.field && !value.field->empty() ? *value.field + ": " : "";
-                failure_ = where() + " refused: " + field + value.message + " (" +
-                           std::string(protocol::errorName(value.code)) + ")";
+                refusal_ = field + value.message + " (" + std::string(protocol::errorName(value.code)) + ")";
+                failure_ = where() + " refused: " + *refusal_;
+                retryMs_ = value.retryMs;
             } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
                 state_ = value.state;
+                stateRev_ = value.rev;
+                scene_ = value.scene;
                 warnings_ = value.scene.warnings;
             } else if constexpr (std::is_same_v<T, protocol::Stats>) {
                 stats_ = value;
@@ -29,6 +33,7 @@ void Session::take(const connection::Event& event) {
             } else if constexpr (std::is_same_v<T, connection::BadMessage>) {
                 failure_ = where() + ": " + value.why + "; are server and client of the same version?";
             } else if constexpr (std::is_same_v<T, connection::Disconnected>) {
+                lost_ = true;
                 if (failure_) return;  // the error that came before it says more
                 failure_ = welcome_ ? "lost the connection to " + where() + ": " + value.why + "; see the server's log"
                                     : "cannot reach " + where() + ": " + value.why +
@@ -47,6 +52,7 @@ Session::Done Session::waitUntil(const std::string& what, const Ready& ready) {
     for (;;) {
         takeAll();
         if (failure_) return tl::make_unexpected(*failure_);
+        if (stop_ && *stop_) return tl::make_unexpected("stopped");
         if (ready()) {
             takeAll();  // what came before a frame, but after the look above: its statistics
             return {};
@@ -68,7 +74,21 @@ Session::Done Session::update(const Json& patch) {
     return waitUntil("the answer to a change", [&] { return newestOk_ >= *id; });
 }
 
+Session::Done Session::show(const Json& patch) {
+    if (auto updated = update(patch); !updated) return updated;
+    const std::uint32_t rev = okRev_;
+    return waitUntil("the scene", [&] { return state_.is_object() && stateRev_ >= rev; });
+}
+
+bool Session::recover() {
+    failure_.reset();
+    refusal_.reset();
+    retryMs_.reset();
+    return !lost_;
+}
+
 Session::Done Session::showFile(std::vector<std::uint8_t> glb) {
+    report_.reset();
     const Json reference = {"asset", connection::sha256Hex(glb)};
     connection_.showFile(std::move(glb));
     if (auto uploaded = waitUntil("the file's scene", [this] { return report_.has_value(); }); !uploaded)
@@ -82,8 +102,8 @@ Session::Done Session::waitForScene(const Json& reference) {
     });
 }
 
-tl::expected<connection::Frame, Failure> Session::requestStill(bool converge) {
-    connection_.requestFrame(true, converge);
+tl::expected<connection::Frame, Failure> Session::request(bool still, bool converge) {
+    connection_.requestFrame(still, converge);
     std::optional<connection::Frame> frame;
     const auto done = waitUntil("a frame", [&] { return (frame = connection_.takeRequested()).has_value(); });
     if (!done) return tl::make_unexpected(done.error());

@@ -1,85 +1,24 @@
 #include "client/shot/shoot.h"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 
 #include "client/connection/image_file.h"
+#include "client/shot/configure.h"
+#include "client/shot/exr_file.h"
 #include "client/shot/progress_bar.h"
 #include "client/shot/report.h"
 #include "client/shot/session.h"
-#include "protocol/patch.h"
 
 namespace caustream::shot {
 namespace {
 
 using connection::Frame;
 using protocol::Json;
+using namespace nlohmann::literals;
 
-constexpr int kJpegQuality = 95;
 constexpr double kSwingDeg = 12.0;  // how far --moving takes the light to either side
 constexpr int kSwingFrames = 40;    // for there and back
-
-bool isFile(const std::string& scene) {
-    return scene.ends_with(".glb") || scene.find('/') != scene.npos;
-}
-
-tl::expected<std::vector<std::uint8_t>, Failure> readFile(const std::string& name) {
-    std::ifstream in(name, std::ios::binary);
-    if (!in) return tl::make_unexpected("cannot read " + name + "; check --scene");
-    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-    if (bytes.empty()) return tl::make_unexpected(name + " is empty; --scene takes a GLB file");
-    return bytes;
-}
-
-// Which way the frame travels: pictures for PNG unpacked, numbers as float, JPEG as the server made it.
-Json streamPatch(const Options& options) {
-    Json stream = {{"target", options.target}, {"width", options.width}, {"height", options.height}};
-    const bool floats = options.kind == FileKind::Npy || options.target == "spectral";
-    const bool jpeg = options.kind == FileKind::Jpeg && !floats;
-    stream["encoding"] = jpeg ? "jpeg" : "raw";
-    stream["sample"] = floats ? "f32" : "u8";
-    if (jpeg) stream["quality"] = {"fixed", kJpegQuality};
-    return {{"stream", stream}};
-}
-
-std::string namesOf(const Json& object) {
-    std::string names;
-    for (const auto& [name, value] : object.items()) names += (names.empty() ? "" : ", ") + name;
-    return names.empty() ? "none" : names;
-}
-
-Session::Done configure(Session& session, const Options& options) {
-    if (isFile(options.scene)) {
-        auto bytes = readFile(options.scene);
-        if (!bytes) return tl::make_unexpected(bytes.error());
-        if (auto shown = session.showFile(std::move(*bytes)); !shown) return shown;
-    } else if (!options.scene.empty()) {
-        const Json patch = protocol::sceneChange({protocol::SceneRef::Kind::Builtin, options.scene});
-        if (auto updated = session.update(patch); !updated) return updated;
-        if (auto resolved = session.waitForScene(patch["scene"]); !resolved) return resolved;
-    } else if (auto resolved = session.waitForScene(nullptr); !resolved) {
-        return resolved;
-    }
-
-    // One patch for all settings, as some hold only together; the resolved state gives arrays their elements.
-    Json patch = streamPatch(options);
-    const auto settings = protocol::settingsPatch(session.state(), options.settings);
-    if (!settings) return tl::make_unexpected("--set " + settings.error().field + ": " + settings.error().message);
-    // The protocol lets a name pass that the scene does not have; here it can only be a slip.
-    for (const char* kind : {"lights", "materials"}) {
-        if (!settings->contains(kind) || !(*settings)[kind].is_object()) continue;
-        const Json known = session.state().value(kind, Json::object());
-        for (const auto& [name, value] : (*settings)[kind].items())
-            if (!known.contains(name))
-                return tl::make_unexpected("--set " + std::string(kind) + "." + name + ": the scene has no such name; its " +
-                                           kind + " are " + namesOf(known));
-    }
-    protocol::extendPatch(patch, *settings);
-    return session.update(patch);
-}
 
 // The first light, swung about a vertical line through what it shines at.
 Json movedLight(const Json& state, int frame) {
@@ -110,19 +49,23 @@ std::string fileOf(const Options& options, int frame) {
     return name;
 }
 
-connection::Written write(const std::string& file, const Options& options, const Frame& frame) {
+connection::Written write(const std::string& file, const Options& options, const Frame& frame, const Json& document) {
+    if (options.kind == FileKind::Exr) {
+        // What the document asks for, as three wavelengths are told from colours by nothing else.
+        const bool bands = document.value("/stream/bands"_json_pointer, "rgb") == "wavelengths";
+        return writeExr(file, frame.image, exrChannels(frame.info->unit, frame.image.bands, bands ? frame.info->wavelengthsNm : std::vector<double>{}));
+    }
     if (options.kind == FileKind::Npy) return connection::writeNpy(file, frame.image);
     if (options.kind == FileKind::Png) return connection::writePng(file, connection::toPicture(frame.image));
     if (frame.header.encoding == protocol::Encoding::Jpeg) return connection::writeBytes(file, frame.encoded);
-    return connection::writeJpeg(file, connection::toPicture(frame.image), kJpegQuality);
+    return connection::writeJpeg(file, connection::toPicture(frame.image), kShotJpegQuality);
 }
 
 }  // namespace
 
 tl::expected<std::string, std::string> shoot(const Options& options) {
-    connection::Options to{.address = options.address, .clientName = "caustream-shot", .strict = true};
+    connection::Options to = connectionTo(options);
     to.keepEncoded = options.kind == FileKind::Jpeg;
-    if (!options.token.empty()) to.token = options.token;
     Session session(std::move(to), std::chrono::seconds(options.timeoutS));
     if (auto connected = session.connect(); !connected) return tl::make_unexpected(connected.error());
     if (auto configured = configure(session, options); !configured) return tl::make_unexpected(configured.error());
@@ -150,7 +93,7 @@ tl::expected<std::string, std::string> shoot(const Options& options) {
         file = fileOf(options, i);
         const bool last = i + 1 == options.frames;
         if (!last && file == options.out) continue;
-        if (auto written = write(file, options, *frame); !written) return tl::make_unexpected(written.error());
+        if (auto written = write(file, options, *frame, session.connection().document()); !written) return tl::make_unexpected(written.error());
         if (last) {
             const std::string text = report.json(file, *frame, session).dump(2) + "\n";
             const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
