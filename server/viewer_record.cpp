@@ -1,5 +1,6 @@
 // What a viewer's log gets, where the viewer asked for one and the operator allows it.
 #include "log.h"
+#include "session/random_id.h"
 #include "viewer.h"
 
 namespace caustream {

@@ -114,9 +114,9 @@ void Batch::queue(const BatchPlan& plan) {
 }
 
 Batch::Outcome Batch::attempt(Session& session, const Work& work) {
-    const auto start = Clock::now();
     const LineJob& job = *work.job;
     job.converge ? turns_->enterConverging(work.order) : turns_->enterStill();
+    const auto start = Clock::now();
     auto drawn = drawLine(session, job, options_.formats, [&](const protocol::Convergence& reached) {
         char text[80];
         std::snprintf(text, sizeof text, "; line %d converges: %.0f%%", job.number, 100.0 * reached.progress);
