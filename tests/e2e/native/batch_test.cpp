@@ -152,17 +152,24 @@ TEST_F(Batch, HoldsEachTargetInEachFormat) {
 }
 
 TEST_F(Batch, ComesToTheSameBitsOverHoweverManyConnections) {
-    // Stills and lines that converge, some of the same light: they must not lend each other photons.
-    std::string lines = poses(4);
-    lines.insert(0, R"({"name": "c0", "converge": true, "patch": {"transport": {"target_error": 0.2}, "lights": {"key": {"position": [-0.6, 1.9, 0.2], "direction": [0.6, -1.4, -0.2]}}}})" "\n");
-    lines += R"({"name": "c1", "converge": true, "patch": {"transport": {"target_error": 0.2}, "camera": {"fov_y_deg": 35}}, "targets": ["composite", "spectral"]})" "\n";
-    lines += R"({"name": "gem", "patch": {"scene": ["builtin", "gem"]}, "targets": ["composite", "bands", "normals"]})" "\n";
-    const std::string file = write("mix.jsonl", lines);
+    // One light on flat facets, which are traced always: lines that converge must not lend their photons to stills, nor
+    // their pictures' samples to each other.
+    std::string lines;
+    const auto add = [&](const char* name, bool converge, double fov, json targets) {
+        lines += json{{"name", name}, {"converge", converge}, {"targets", std::move(targets)},
+                      {"patch", {{"scene", {"builtin", "gem"}}, {"camera", {{"fov_y_deg", fov}}}, {"transport", {{"target_error", 0.12}}}}}}.dump() + "\n";
+    };
+    add("c0", true, 40, {"composite"});
+    for (const char* name : {"s0", "s1", "s2", "s3"}) add(name, false, 30.0 + name[1], {"composite", "spectral"});
+    add("c1", true, 40, {"composite", "spectral", "normals"});
+    add("c2", true, 35, {"bands", "composite"});
+    const std::string file = write("mix.jsonl", lines + poses(2));
     ASSERT_EQ(shoot(arguments(*std::make_unique<Server>(), file, folder_ / "one")).exitCode, 0);
-    ASSERT_EQ(shoot(arguments(*std::make_unique<Server>(), file, folder_ / "three", {"--connections", "3"})).exitCode, 0);
-    expectSame(folder_ / "one", folder_ / "three");
+    ASSERT_EQ(shoot(arguments(*std::make_unique<Server>(), file, folder_ / "four", {"--connections", "4"})).exitCode, 0);
+    expectSame(folder_ / "one", folder_ / "four");
     EXPECT_TRUE(jsonOf(folder_ / "one/c0.json")["targets"]["composite"]["convergence"]["converged"]);
-    EXPECT_EQ(linesOf(folder_ / "one/index.jsonl").size(), 7u);
+    EXPECT_EQ(jsonOf(folder_ / "one/s0.json")["targets"]["composite"]["map_hash"], jsonOf(folder_ / "one/s3.json")["targets"]["spectral"]["map_hash"]);
+    EXPECT_EQ(linesOf(folder_ / "one/index.jsonl").size(), 9u);
 }
 
 TEST_F(Batch, GoesOnAfterItWasKilled) {
