@@ -12,16 +12,20 @@ scripts/run.sh [server options]
     caustream-view where there is a display. Ctrl-C stops both. Options go to the server: --port 0, --gpu list, ...
 
 scripts/run.sh --shot FILE [--scene NAME|FILE.glb] [more options of caustream-shot]
-    Fetches one frame through the socket into FILE (.png, .npy or .jpg) and ends.
+    Fetches one frame through the socket into FILE (.png, .npy, .exr or .jpg) and ends.
         scripts/run.sh --shot gem.png --scene gem
         scripts/run.sh --shot map.npy --scene prism --target spectral --set transport.wavelengths=21
     build/release/bin/caustream-shot --help lists the options.
+
+scripts/run.sh --batch FILE --out DIR [more options of caustream-shot]
+scripts/run.sh --replay LOG --out DIR [more options of caustream-shot]
+    Draws the lines of FILE, or plays LOG, with a server of its own (docs/batch.md), and ends.
 
 PRESET=debug scripts/run.sh uses another preset of CMakePresets.json than release.
 TEXT
 }
 
-shot=""
+shoots=""
 arguments=()
 while [[ $# -gt 0 ]]; do
     case "$1" in
@@ -34,8 +38,13 @@ while [[ $# -gt 0 ]]; do
                 echo "run: --shot needs a file, for example: scripts/run.sh --shot gem.png --scene gem" >&2
                 exit 1
             }
-            shot="$2"
+            shoots=yes
+            arguments+=(--out "$2")
             shift
+            ;;
+        --batch | --batch=* | --replay | --replay=*)
+            shoots=yes
+            arguments+=("$1")
             ;;
         *) arguments+=("$1") ;;
     esac
@@ -43,7 +52,7 @@ while [[ $# -gt 0 ]]; do
 done
 
 targets=(caustream-server caustream-shot)
-[[ -n "$shot" ]] || targets+=(caustream-view)
+[[ -n "$shoots" ]] || targets+=(caustream-view)
 "$root/scripts/setup.sh"
 (
     cd "$root"
@@ -64,7 +73,7 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 
 # The server says on standard output where it is, once frames can be asked for.
-if [[ -n "$shot" ]]; then
+if [[ -n "$shoots" ]]; then
     options=(--port 0 --log-level error)
 else
     options=("${arguments[@]}")
@@ -88,8 +97,8 @@ if [[ -z "$address" ]]; then
     exit
 fi
 
-if [[ -n "$shot" ]]; then
-    "$bin/caustream-shot" --url "$address" --out "$shot" "${arguments[@]}"
+if [[ -n "$shoots" ]]; then
+    "$bin/caustream-shot" --url "$address" "${arguments[@]}"
     exit
 fi
 

@@ -195,7 +195,7 @@ TEST_F(Shot, WaitsUntilAPictureHasConverged) {
 TEST_F(Shot, SaysWhatIsWrongInOneLine) {
     const std::string file = folder_ / "none.png";
     expectOneLine(shoot({"--scene", "sphere"}), "--out");
-    expectOneLine(shoot({"--out", folder_ / "picture.bmp"}), ".png, .npy or .jpg");
+    expectOneLine(shoot({"--out", folder_ / "picture.bmp"}), ".png, .npy, .exr or .jpg");
     expectOneLine(shoot({"--out", file, "--scene", "nowhere"}), "nowhere");
     expectOneLine(shoot({"--out", file, "--scene", folder_ / "missing.glb"}), "missing.glb");
     expectOneLine(shoot({"--out", file, "--set", "no-equals-sign"}), "PATH=VALUE");
