@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using protocol::Json;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kReconnects = 5;      // a second apart, until a server that is started again is there
+constexpr int kReconnects = 20;     // a second apart, until a server that is started again is there
 constexpr int kTriesOfALine = 2;    // where the connection was lost at it: once may be chance
 constexpr auto kTell = std::chrono::milliseconds(200);
 

@@ -31,6 +31,7 @@ std::string namesOf(const Json& object) {
 
 connection::Options connectionTo(const Options& options) {
     connection::Options to{.address = options.address, .clientName = "caustream-shot", .strict = true};
+    to.caFile = options.caFile;
     if (!options.token.empty()) to.token = options.token;
     return to;
 }

@@ -86,6 +86,7 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     app.add_option("--timeout", options.timeoutS, "seconds to wait for the server, each time")
         ->check(CLI::Range(1, 3600))
         ->capture_default_str();
+    app.add_option("--ca", options.caFile, "PEM file: what an https server's certificate is checked against, instead of the system's")->check(CLI::ExistingFile);
     app.add_option("--token", options.token, "the server's, where it asks for one");
     app.add_option("--out", options.out, "the file: .png, .npy, .exr or .jpg; of --batch and --replay a folder")->required();
     std::string formats = "png,exr";

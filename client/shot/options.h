@@ -24,6 +24,7 @@ struct Options {
     bool moving = false;    // stream while the light moves, instead of stills
     bool converge = false;  // stream until nothing is left to gain
     int timeoutS = 120;   // for each thing that is waited for
+    std::string caFile;   // of --url https://...; empty: the system's
     std::string token;
     std::string out;        // a file; of a batch or a replay: a folder
     FileKind kind = FileKind::Png;

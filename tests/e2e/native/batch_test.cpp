@@ -202,6 +202,20 @@ TEST_F(Batch, GoesOnAfterItWasKilled) {
     EXPECT_EQ(other.exitCode, 0);
 }
 
+TEST_F(Batch, WaitsForAServerThatIsStartedAgain) {
+    const std::string lines = write("poses.jsonl", poses(6));
+    ASSERT_EQ(shoot(arguments(*server_, lines, folder_ / "whole")).exitCode, 0);
+    auto first = std::make_unique<Server>();
+    const std::string port = first->port();
+    Background batch(CAUSTREAM_BIN "/caustream-shot", arguments(*first, lines, folder_ / "set", {"--connections", "2"}));
+    for (int i = 0; i < 3000 && !fs::exists(folder_ / "set/pose1.json"); ++i) usleep(10'000);
+    first->kill();
+    EXPECT_FALSE(fs::exists(folder_ / "set/index.jsonl")) << "it was not done before";
+    const Server second({"--port", port});
+    EXPECT_TRUE(batch.ends()) << "with exit code 0";
+    expectSame(folder_ / "whole", folder_ / "set");
+}
+
 TEST_F(Batch, StopsBetweenTwoFilesAndGoesOn) {
     const std::string lines = write("poses.jsonl", poses(40));
     {
