@@ -1,6 +1,7 @@
 #include "client/connection/socket.h"
 
 #include <libwebsockets.h>
+#include <openssl/x509_vfy.h>
 
 #include <algorithm>
 #include <atomic>
@@ -29,15 +30,10 @@ struct Outgoing {
     std::vector<unsigned char> bytes;  // LWS_PRE bytes that the library fills, then the message; masked in place
 };
 
-// The library's words for a certificate that does not fit, made ours; empty for any other failure.
-std::string certificateProblem(const std::string& why, const Address& address) {
-    constexpr std::string_view kMark = "X509_V_ERR = ";
-    const auto at = why.find(kMark);
-    if (at == why.npos) return {};
-    const auto words = why.find(": ", at);
-    const std::string reason = words == why.npos ? why.substr(at) : why.substr(words + 2);
-    return "the certificate of " + address.host + " is not trusted: " + reason +
-           "; --ca FILE names the authority that signed it, and the address must be one it is made out for";
+std::string certificateProblem(int error) {
+    const bool name = error == X509_V_ERR_HOSTNAME_MISMATCH || error == X509_V_ERR_IP_ADDRESS_MISMATCH;
+    return std::string(X509_verify_cert_error_string(error)) +
+           (name ? "; use the name or address that it is made out for" : "; --ca FILE names the authority that signed it");
 }
 
 }  // namespace
@@ -60,7 +56,7 @@ struct Socket::Impl {
     bool attempting = false, again = true, closeAsked = false;
     int closeCode = 0, peerCode = 0;
     Backoff backoff;
-    std::string closeWhy;
+    std::string closeWhy, certificate;  // certificate: what is wrong with the server's
     Clock::time_point nextAttempt{};
     std::vector<std::uint8_t> received;
     std::mt19937 random{std::random_device{}()};
@@ -227,6 +223,7 @@ void Socket::Impl::attempt() {
     if (address.tls) info.ssl_connection = LCCSCF_USE_SSL;
     attempting = true;
     closeAsked = false;
+    certificate.clear();
     if (!lws_client_connect_via_info(&info) && attempting) ended("cannot connect");
 }
 
@@ -243,8 +240,13 @@ void Socket::Impl::ended(const std::string& why) {
     std::uniform_real_distribution<double> share;
     nextAttempt = Clock::now() + std::chrono::milliseconds(backoff.next(share(random)));
     const int code = std::exchange(peerCode, 0);
-    const std::string certificate = certificateProblem(why, address);
-    if (!stop && handlers.closed) handlers.closed(certificate.empty() ? code : kBadCertificate, certificate.empty() ? why : certificate);
+    if (stop || !handlers.closed) return;
+    if (!certificate.empty())
+        handlers.closed(kBadCertificate, "the certificate of " + address.host + " is not trusted: " + certificate);
+    else if (address.tls && why.starts_with("connect SSL"))
+        handlers.closed(code, "what answers does not speak TLS; try http or ws");
+    else
+        handlers.closed(code, why);
 }
 
 int Socket::Impl::receive(const char* bytes, std::size_t length) {
@@ -289,7 +291,7 @@ int Socket::Impl::write() {
     return 0;
 }
 
-int Socket::Impl::callback(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
+int Socket::Impl::callback(lws* wsi, lws_callback_reasons reason, void* user, void* in, size_t length) {
     auto* self = static_cast<Impl*>(lws_context_user(lws_get_context(wsi)));
     const auto* bytes = static_cast<const char*>(in);
     switch (reason) {
@@ -302,6 +304,10 @@ int Socket::Impl::callback(lws* wsi, lws_callback_reasons reason, void*, void* i
             }
             if (self->handlers.opened) self->handlers.opened();
             return 0;
+        case LWS_CALLBACK_OPENSSL_PERFORM_SERVER_CERT_VERIFICATION:
+            // `length`: whether OpenSSL found this link of the chain good. Nothing is overruled, but said why.
+            if (length == 0) self->certificate = certificateProblem(X509_STORE_CTX_get_error(static_cast<X509_STORE_CTX*>(user)));
+            return length == 0;
         case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
             self->ended(bytes && length ? std::string(bytes, length) : "cannot connect");
             return 0;

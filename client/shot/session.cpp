@@ -1,5 +1,7 @@
 #include "client/shot/session.h"
 
+#include "client/connection/closing.h"
+
 namespace caustream::shot {
 
 using protocol::Json;
@@ -35,6 +37,10 @@ void Session::take(const connection::Event& event) {
             } else if constexpr (std::is_same_v<T, connection::Disconnected>) {
                 lost_ = true;
                 if (failure_) return;  // the error that came before it says more
+                if (value.closeCode == connection::kBadCertificate) {
+                    failure_ = "cannot reach " + where() + ": " + value.why;
+                    return;
+                }
                 failure_ = welcome_ ? "lost the connection to " + where() + ": " + value.why + "; see the server's log"
                                     : "cannot reach " + where() + ": " + value.why +
                                           "; is caustream-server running there? Its ready line shows the address";

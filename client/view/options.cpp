@@ -43,7 +43,8 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     app.add_option("--height", options.height, "of the window")->check(CLI::Range(320, 4320))->capture_default_str();
     app.add_option("--token", options.token, "the server's, where it asks for one");
     app.add_option("--follow", options.follow, "shows another viewer's scene and light, by the session that its panel names");
-    app.add_option("--ca", options.caFile, "PEM file: what an https server's certificate is checked against, instead of the system's");
+    app.add_option("--ca", options.caFile, "PEM file: what an https server's certificate is checked against, instead of the system's")
+        ->check(CLI::ExistingFile);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
@@ -56,8 +57,6 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     options.address = std::move(*address);
     if (!options.follow.empty() && (!options.file.empty() || !options.scene.empty()))
         return wrong("--follow shows another viewer's scene; leave the scene or file out");
-    if (!options.caFile.empty() && !std::filesystem::is_regular_file(options.caFile))
-        return wrong("--ca: cannot read " + options.caFile);
     if (!options.file.empty() && !std::filesystem::is_regular_file(options.file))
         return wrong("cannot read " + options.file);
     for (const auto& text : settings) {
