@@ -23,7 +23,7 @@ struct Options {
     std::string clientName;
     std::optional<std::string> token;
     std::string caFile;  // PEM, instead of the system's authorities; only with TLS
-    std::string follow;  // another session, whose scene is shown with a camera of our own; empty: a scene of our own
+    std::string follow;  // another session's view id, whose scene is shown with a camera of our own; empty: a scene of our own
     std::uint32_t maxInflight = 2;  // frames under way, 1..8
     bool strict = false;            // a field that the protocol does not know is an error
     bool keepEncoded = false;       // fill Frame::encoded

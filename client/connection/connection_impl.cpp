@@ -53,6 +53,7 @@ void Connection::Impl::hello() {
     info = std::make_shared<protocol::StreamInfo>();
     open = true;
     welcomed = helloRefused = false;
+    refusal.clear();
     lastHeardUs = nowUs();
     helloId = nextId();
     protocol::Hello message{
@@ -67,8 +68,14 @@ void Connection::Impl::hello() {
     resuming = !session.empty();
     if (resuming) {
         std::scoped_lock lock(mutex);
+        Json state = document.taken();
+        // Whom we follow may come back after us: until then its scene is as we saw it last.
+        if (Json both = theirs; !both.empty()) {
+            both.merge_patch(state);
+            if (both.dump().size() < limits.stateBytes) state = std::move(both);
+        }
         message.resume = protocol::Resume{
-            .session = session, .state = document.taken(), .rev = rev, .inputSeq = inputSeq};
+            .session = session, .state = std::move(state), .rev = rev, .inputSeq = inputSeq};
     }
     socket->sendText(protocol::encode(message));
 }
@@ -169,7 +176,9 @@ void Connection::Impl::onError(const protocol::ErrorMessage& error) {
         session.clear();
         hello();
     } else if (ofHello) {
+        // Whom we follow may not be there yet; what a server cannot do, it will not be able to in a second.
         helloRefused = error.code == protocol::ErrorCode::Unsupported;
+        refusal = error.message;
         socket->close(1000, "");
     }
     tell(error);
@@ -191,6 +200,10 @@ void Connection::Impl::onText(std::string_view text) {
                 onError(value);
             } else if constexpr (std::is_same_v<T, protocol::StateMessage>) {
                 rev = value.rev;
+                if (!options.follow.empty()) {
+                    theirs = value.state;
+                    for (const char* ours : {"camera", "stream"}) theirs.erase(ours);
+                }
                 {
                     std::scoped_lock lock(mutex);
                     document.prune(value.state);
@@ -254,7 +267,7 @@ void Connection::Impl::onClosed(int code, const std::string& why) {
     const bool retry = closing.retry && !helloRefused;
     if (!retry) socket->reconnectIn(-1);
     if (const int ms = std::exchange(comeBack, -1); ms >= 0 && retry) socket->reconnectIn(ms);
-    tell(Disconnected{code, closing.why, retry, socket->waitMs()});
+    tell(Disconnected{code, refusal.empty() ? closing.why : std::exchange(refusal, ""), retry, socket->waitMs()});
 }
 
 void Connection::Impl::onTick() {

@@ -33,6 +33,7 @@ struct Connection::Impl {
     std::uint32_t rev = 0;  // the newest that the server told
     bool resuming = false;  // hello brought the document
     Json serverHas = Json::object();  // its document when it welcomed us
+    Json theirs = Json::object();     // of a session that is followed: what it showed last
     KeptFiles kept;
     std::uint32_t helloId = 0;
     protocol::Limits limits;
@@ -42,6 +43,7 @@ struct Connection::Impl {
     std::unique_ptr<Upload> upload;
     bool restoring = false;  // the upload is of a scene that the document already shows
     bool open = false, welcomed = false, helloRefused = false;
+    std::string refusal;  // of the hello, a sentence
     std::uint64_t lastPingUs = 0, lastHeardUs = 0;
     int comeBack = -1;  // ms; what a goaway or a busy server asked for
     std::mt19937 random{std::random_device{}()};

@@ -34,7 +34,7 @@ struct Message {
 struct Model {
     bool connected = false, gaveUp = false;  // gaveUp: there will be no other attempt by itself
     std::string connection = "connecting";   // one line
-    std::string following;                   // another session, whose scene is shown; empty: our own
+    std::string following;                   // the view id of whose scene is shown; empty: our own
     std::string recording;                   // the file on the server; empty: nothing is recorded
     std::optional<protocol::Welcome> welcome;
     protocol::SceneSummary scene;

@@ -11,7 +11,7 @@ constexpr const char* kHelp = R"(Examples:
   caustream-view --url http://192.168.1.20:9720 --scene prism
   caustream-view glass.glb
   caustream-view --url https://render.example.org --token SECRET
-  caustream-view --follow SESSION
+  caustream-view --follow ID
   caustream-view --scene gem --set transport.mode=refined --set 'camera.exposure=["ev",9]'
 
 Mouse: left drag orbits, right or middle drag pans, the wheel zooms; Shift + left drag moves the light.
@@ -42,7 +42,7 @@ tl::expected<Options, ParseEnd> parseOptions(int argc, const char* const* argv) 
     app.add_option("--width", options.width, "of the window")->check(CLI::Range(480, 7680))->capture_default_str();
     app.add_option("--height", options.height, "of the window")->check(CLI::Range(320, 4320))->capture_default_str();
     app.add_option("--token", options.token, "the server's, where it asks for one");
-    app.add_option("--follow", options.follow, "shows another viewer's scene and light, by the session that its panel names");
+    app.add_option("--follow", options.follow, "shows another viewer's scene and light, by the session id that its panel copies");
     app.add_option("--ca", options.caFile, "PEM file: what an https server's certificate is checked against, instead of the system's")
         ->check(CLI::ExistingFile);
     try {

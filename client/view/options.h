@@ -16,7 +16,7 @@ struct Options {
     std::vector<protocol::Setting> settings;  // of the first scene
     std::string token;
     std::string caFile;  // empty: the system's authorities
-    std::string follow;  // a session; empty: a scene of our own
+    std::string follow;  // a view id; empty: a scene of our own
     std::string saveFolder = ".";
     int width = 1280, height = 800;  // of the window
 };

@@ -77,9 +77,11 @@ void drawScene(Model& model, Editor& editor) {
 
 // Whose scene it is, and whether what is done to it is written down.
 void drawSession(const Model& model, Controls& controls) {
-    const std::string& session = model.following.empty() ? model.welcome->session : model.following;
+    // Not the session's own id: whoever knows that can take the session over.
+    const std::string& session = model.following.empty() ? model.welcome->viewId : model.following;
+    if (session.empty()) return;
     ImGui::TextDisabled(model.following.empty() ? "session %.8s" : "follows session %.8s", session.c_str());
-    tooltip(model.following.empty() ? "A second viewer: caustream-view --follow with this session, or the page's #follow="
+    tooltip(model.following.empty() ? "Copy it for a second viewer: caustream-view --follow ID, or the page's #follow=ID"
                                     : "Its scene, light, glass and map are set there; camera and picture are this window's.");
     ImGui::SameLine();
     if (ImGui::SmallButton("copy")) ImGui::SetClipboardText(session.c_str());

@@ -77,7 +77,8 @@ export class Connection {
                 this.handlers_.forget();
                 this.hello_();
             } else {
-                this.refusal_ = error.code === 'unsupported' ? error : null;
+                // Whom this page follows may not be there yet; what a server cannot do, it will not be able to in a second.
+                this.refusal_ = error;
                 this.socket_?.close();
             }
         });
@@ -133,9 +134,10 @@ export class Connection {
 
         const closing = closingOf(code);
         if (code === kAuthRequired) return this.handlers_.link('auth', closing.why);
-        if (!closing.retry || this.refusal_) return this.handlers_.link('ended', this.refusal_ ? sentence(this.refusal_) : closing.why);
+        const why = this.refusal_?.message ?? closing.why;
+        if (!closing.retry || this.refusal_?.code === 'unsupported') return this.handlers_.link('ended', sentence({ message: why }));
         const waitMs = this.comeBackMs_ ?? this.backoff_.next();
-        this.handlers_.link('retry', closing.why, waitMs);
+        this.handlers_.link('retry', why, waitMs);
         this.retryTimer_ = setTimeout(() => this.connect(), waitMs);
     }
 }

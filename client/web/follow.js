@@ -2,7 +2,7 @@
 
 const byId = (id) => document.getElementById(id);
 
-// The session that this page follows; null: it has its own.
+// The view id of the session that this page follows; null: it has its own.
 export const followed = new URLSearchParams(location.hash.slice(1)).get('follow');
 
 // This very page with another fragment is another viewer.
@@ -12,7 +12,7 @@ addEventListener('hashchange', () => location.reload());
 export function linkTo(welcome) {
     const address = new URL(location.href);
     address.searchParams.set('srv', welcome.server);
-    address.hash = `follow=${welcome.session}`;
+    address.hash = `follow=${welcome.view_id}`;
     return address.href;
 }
 
@@ -26,13 +26,14 @@ export function greyOut() {
 
 // says(text) tells how it went.
 export function showSession(welcome, says) {
-    const short = (followed ?? welcome.session).slice(0, 8);
-    byId('session').hidden = false;
-    byId('session').title = followed ?? welcome.session;
+    // Not the session's own id: whoever knows that can take the session over.
+    const viewId = followed ?? welcome.view_id ?? '';
+    byId('session').hidden = !viewId;
+    byId('session').title = viewId;
     byId('session').textContent = followed
-        ? `Follows session ${short}: its scene, light, glass and map are set there; camera and picture are yours.`
-        : `Session ${short}`;
-    byId('copy-link').hidden = followed !== null || !welcome.caps?.includes('follow');
+        ? `Follows session ${viewId.slice(0, 8)}: its scene, light, glass and map are set there; camera and picture are yours.`
+        : `Session ${viewId.slice(0, 8)}`;
+    byId('copy-link').hidden = followed !== null || !viewId;
     for (const id of ['mode-light', 'mode-camera', 'open', 'hint']) byId(id).hidden ||= followed !== null;
     byId('copy-link').onclick = async () => {
         const link = linkTo(welcome);

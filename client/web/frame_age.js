@@ -11,7 +11,8 @@ export class FrameAge {
     reset() {
         this.serverAheadUs_ = null;
         this.leastRoundTripUs_ = Infinity;
-        this.ms = null;    // of the newest frame
+        this.shownRev_ = null;
+        this.ms = null;    // of the newest frame that shows a change
     }
 
     pong(sentUs, serverUs, receivedUs) {
@@ -22,11 +23,14 @@ export class FrameAge {
     }
 
     painted(frame, paintedUs) {
-        // Only the first frame with an input tells its age: those that follow at rest are later for no fault of their own.
+        // Only the first frame with an input or a change tells its age: those that follow at rest are later for no fault
+        // of their own.
+        const changed = frame.stateRev !== this.shownRev_;
+        this.shownRev_ = frame.stateRev;
         if (frame.inputSeq > this.newestInput_ && frame.clientUs) {
             this.newestInput_ = frame.inputSeq;
             this.ms = (paintedUs - frame.clientUs) / 1000;
-        } else if (this.serverAheadUs_ !== null) {
+        } else if (this.serverAheadUs_ !== null && changed) {
             const underWayUs = paintedUs + this.serverAheadUs_ - frame.serverUs;
             this.ms = Math.max(0, underWayUs + frame.holdUs + frame.renderUs + frame.encodeUs) / 1000;
         }

@@ -1,5 +1,7 @@
 // What is to be known while it lasts, over the picture: the connection, the server's statuses.
 
+import { sentence } from './connection.js';
+
 export class Notices {
     constructor(list) {
         this.list_ = list;
@@ -23,7 +25,7 @@ export class Notices {
         this.list_.replaceChildren(...[...this.byKey_.values()].map(({ level, message }) => {
             const line = document.createElement('li');
             line.className = level;
-            line.textContent = message;
+            line.textContent = sentence({ message });
             return line;
         }));
     }

@@ -21,6 +21,7 @@ export class Session {
         this.refused_ = refused;
         this.followed_ = followed;   // another session, whose scene is shown
         this.document_ = new Document();
+        this.theirs_ = {};           // of a session that is followed: what it showed last
         this.resolved_ = {};         // the server's document with the file's values in it
         this.lastUpdate_ = 0;
         this.pose_ = null;           // the newest pose, not yet sent
@@ -48,6 +49,10 @@ export class Session {
             const paths = Object.entries(state.lights ?? {}).map(([name, light]) => [name, this.pathOf_(light)]);
             this.home = { camera: state.camera, lights: state.lights, paths: Object.fromEntries(paths) };
             this.homes_.set(sceneKey, this.home);
+        }
+        if (this.followed_) {
+            const { camera, stream, ...theirs } = state;
+            this.theirs_ = theirs;
         }
         this.document_.prune(state);
         // It was sent before what has moved since.
@@ -173,9 +178,11 @@ export class Session {
     // For hello: the session to go on with, its document for a server that has lost it, and whom to follow.
     introduction() {
         this.resumed_ = Boolean(this.id);
+        // Whom this page follows may come back after it: until then that scene is as it was seen last.
+        const state = { ...this.theirs_, ...this.document_.taken };
         return {
             ...(this.followed_ ? { role: 'view', follow: this.followed_ } : {}),
-            ...(this.id ? { resume: { session: this.id, state: this.document_.taken, rev: this.rev, input_seq: this.inputSeq } } : {}),
+            ...(this.id ? { resume: { session: this.id, state, rev: this.rev, input_seq: this.inputSeq } } : {}),
         };
     }
 }

@@ -60,6 +60,7 @@ TEST(FrameAge, IsElseTheServersTimeAndTheWay) {
     age.pong(990'000, 9'995'000, 1'900'000);  // slower: says less
     // Handed over at 9.000 by its clock, 1.000 by ours.
     EXPECT_EQ(age.painted(frame(0, 0), 1'006'000), 6.0 + 24.0);
+    EXPECT_FALSE(age.painted(frame(0, 0), 1'406'000)) << "nothing has changed: it converges";
     age.reset();
     EXPECT_FALSE(age.painted(frame(0, 0), 1'006'000)) << "another server's clock";
 }
