@@ -26,18 +26,16 @@ void append(std::vector<Json>& patches, const Json& patch) {
 
 }  // namespace
 
-Json mergeDifference(const Json& from, const Json& to) {
+Json lacking(const Json& has, const Json& wanted) {
     Json patch = Json::object();
-    for (const auto& [key, value] : from.items())
-        if (!to.contains(key)) patch[key] = nullptr;
-    for (const auto& [key, value] : to.items()) {
-        const auto before = from.find(key);
-        if (before == from.end()) {
+    for (const auto& [key, value] : wanted.items()) {
+        const auto there = has.find(key);
+        if (there == has.end()) {
             patch[key] = value;
-        } else if (before->is_object() && value.is_object()) {
-            Json inner = mergeDifference(*before, value);
+        } else if (there->is_object() && value.is_object()) {
+            Json inner = lacking(*there, value);
             if (!inner.empty()) patch[key] = std::move(inner);
-        } else if (*before != value) {
+        } else if (*there != value) {
             patch[key] = value;
         }
     }
@@ -94,7 +92,7 @@ std::vector<Json> Document::replay(const Json& has, const std::vector<std::strin
         for (auto item = ours.begin(); item != ours.end();)
             item = std::ranges::find(members, item.key()) == members.end() ? ours.erase(item) : std::next(item);
     std::vector<Json> patches;
-    if (Json difference = mergeDifference(ours, taken_); !difference.empty()) patches.push_back(std::move(difference));
+    if (Json patch = lacking(ours, taken_); !patch.empty()) patches.push_back(std::move(patch));
     for (Json& patch : std::exchange(waiting_, {})) patches.push_back(std::move(patch));
     taken_ = std::move(ours);
     return patches;

@@ -9,8 +9,8 @@ namespace caustream::connection {
 
 using protocol::Json;
 
-// The merge patch (RFC 7396) that makes `to` of `from`; empty when they are equal.
-Json mergeDifference(const Json& from, const Json& to);
+// The merge patch (RFC 7396) of all that `wanted` says and `has` does not; empty when it says it all.
+Json lacking(const Json& has, const Json& wanted);
 
 class Document {
  public:
@@ -25,7 +25,7 @@ class Document {
     void answered(std::uint32_t id, bool taken);
     void lost();  // the connection broke: what was not answered has still to be heard
 
-    // A server is there and has the document `has`, of which only `members` are ours to change (empty: all). What to
+    // A server is there and has the document `has`: that which it was given, or part of it; of which only `members` are ours to change (empty: all). What to
     // tell it, in this order, each with sent().
     std::vector<Json> replay(const Json& has, const std::vector<std::string>& members = {});
 

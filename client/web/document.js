@@ -14,15 +14,14 @@ export function mergePatch(target, patch) {
     return merged;
 }
 
-// The patch that makes `to` of `from`; empty when they are equal.
-export function mergeDifference(from, to) {
+// The patch of all that `wanted` says and `has` does not; empty when it says it all.
+export function lacking(has, wanted) {
     const patch = {};
-    for (const key of Object.keys(from)) if (!(key in to)) patch[key] = null;
-    for (const [key, value] of Object.entries(to)) {
-        if (isObject(from[key]) && isObject(value)) {
-            const inner = mergeDifference(from[key], value);
+    for (const [key, value] of Object.entries(wanted)) {
+        if (isObject(has[key]) && isObject(value)) {
+            const inner = lacking(has[key], value);
             if (Object.keys(inner).length) patch[key] = inner;
-        } else if (!(key in from) || JSON.stringify(from[key]) !== JSON.stringify(value)) {
+        } else if (JSON.stringify(has[key]) !== JSON.stringify(value)) {
             patch[key] = value;
         }
     }
@@ -99,12 +98,12 @@ export class Document {
         this.waiting_ = all;
     }
 
-    // A server is there and has the document `has`, of which only `members` are ours to change (nothing: all): what it
-    // lacks waits before all the rest.
+    // A server is there and has the document `has`: that which it was given, or part of it; of which only `members` are
+    // ours to change (nothing: all). What it lacks waits before all the rest.
     meet(has, members) {
         const ours = members ? Object.fromEntries(Object.entries(has).filter(([key]) => members.includes(key))) : has;
-        const difference = mergeDifference(ours, this.taken);
-        if (Object.keys(difference).length) this.waiting_.unshift(difference);
+        const patch = lacking(ours, this.taken);
+        if (Object.keys(patch).length) this.waiting_.unshift(patch);
         this.taken = ours;
     }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "client/connection/connection.h"
 #include "display.h"
 
 namespace caustream::e2e {
@@ -57,12 +58,16 @@ class View : public testing::Test {
     }
     static bool isLit(const Pixels& picture) { return picture.quantile(0.998) > 180.0 && picture.quantile(0.3) > 5.0; }
 
-    Server server_;
+    std::unique_ptr<Server> server_ = std::make_unique<Server>();
     Display display_{kWidth, kHeight};
     TemporaryFolder folder_;
     Background open(const std::string& scene, const std::vector<std::string>& settings) {
-        std::vector<std::string> arguments = {"--url", server_.url(), "--scene", scene, "--save-folder", folder_.path, "--width",
+        return open({"--scene", scene}, settings);
+    }
+    Background open(std::vector<std::string> what, const std::vector<std::string>& settings) {
+        std::vector<std::string> arguments = {"--url", server_->url(), "--save-folder", folder_.path, "--width",
                                               std::to_string(kWidth), "--height", std::to_string(kHeight)};
+        arguments.insert(arguments.end(), what.begin(), what.end());
         for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
         return {CAUSTREAM_BIN "/caustream-view", arguments, display_.environment()};
     }
@@ -125,6 +130,56 @@ TEST_F(View, ABarGrowsWhileThePictureConvergesAndGoesWhenItHas) {
     EXPECT_GT(first, 0.0) << "there was no bar";
     EXPECT_GT(longest, first) << "it did not grow";
     EXPECT_TRUE(gone) << "it stayed";
+}
+
+TEST_F(View, ShowsItsOwnPoseAgainAfterItsServerWasKilled) {
+    const Background view = open("sphere", {"transport.mode=refined"});
+    const Pixels first = settled(isLit);
+    ASSERT_TRUE(isLit(first)) << "no picture came";
+    display_.drag(kPictureWidth / 2, kHeight / 2, 70, 0, "shift");
+    const Pixels moved = settled([&](const Pixels& picture) { return difference(picture, first) > 0.5; });
+
+    const std::string port = server_->port();
+    server_->kill();
+    std::this_thread::sleep_for(500ms);
+    // The picture stays, but for the note at its top.
+    const Pixels without = pictureOf(display_.look());
+    EXPECT_GT(difference(without, moved), 0.05) << "nothing says that the server is gone";
+    EXPECT_LT(difference(without, moved), 3.0) << "the picture is gone";
+    // And what is done meanwhile is not lost.
+    display_.drag(kPictureWidth / 2, kHeight / 2, 60, 0);
+    server_ = std::make_unique<Server>(std::vector<std::string>{"--port", port});
+    const Pixels turned = settled([&](const Pixels& picture) { return difference(picture, moved) > 3.0; });
+    EXPECT_GT(difference(turned, moved), 3.0) << "what was done meanwhile is not to be seen";
+    display_.drag(kPictureWidth / 2, kHeight / 2, -60, 0);
+    const Pixels back = settled([&](const Pixels& picture) { return difference(picture, turned) > 3.0; });
+    EXPECT_LT(difference(back, moved), 0.5) << "it is another picture";
+}
+
+TEST_F(View, FollowsAnothersLight) {
+    connection::Connection leader({.address = *connection::parseAddress(server_->url()), .clientName = "view_test"});
+    ASSERT_TRUE(leader.update({{"scene", {"builtin", "sphere"}}, {"transport", {{"mode", "refined"}}}}));
+    std::string viewId;
+    protocol::Json light;
+    for (int i = 0; i < 600 && light.is_null(); ++i, leader.wait(100ms))
+        for (const auto& event : leader.takeEvents()) {
+            if (const auto* welcome = std::get_if<protocol::Welcome>(&event)) viewId = welcome->viewId;
+            if (const auto* state = std::get_if<protocol::StateMessage>(&event))
+                if (state->scene.name == "sphere") light = state->state["lights"]["key"];
+        }
+    ASSERT_FALSE(light.is_null());
+
+    const Background view = open({"--follow", viewId}, {});
+    const Pixels first = settled(isLit);
+    ASSERT_TRUE(isLit(first)) << "no picture came";
+    // Its own hand moves its camera, and not the light.
+    display_.drag(kPictureWidth / 2, kHeight / 2, 0, 40, "shift");
+    const Pixels turned = settled([&](const Pixels& picture) { return difference(picture, first) > 1.0; });
+    EXPECT_GT(difference(turned, first), 1.0);
+    for (const char* of : {"position", "direction"}) light[of][0] = -light[of][0].get<double>();
+    ASSERT_TRUE(leader.input({{"lights", {{"key", {{"position", light["position"]}, {"direction", light["direction"]}}}}}}));
+    const Pixels lit = settled([&](const Pixels& picture) { return difference(picture, turned) > 0.5; });
+    EXPECT_GT(causticOf(lit).x, causticOf(turned).x + 12.0) << "the light went to the left, the caustic goes to the right";
 }
 
 TEST_F(View, StaysSmallAndEndsWhenAsked) {
