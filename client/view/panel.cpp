@@ -63,7 +63,7 @@ void drawScene(Model& model, Editor& editor) {
     if (!model.welcome) return;
     const bool builtin = model.sceneRef.kind == protocol::SceneRef::Kind::Builtin;
     label("Scene");
-    if (const auto* name = choice("##scene", builtin ? model.sceneRef.name : model.fileName, model.welcome->scenes))
+    if (const auto* name = choice("##scene", builtin ? model.sceneRef.name : model.fileName.empty() ? model.scene.name : model.fileName, model.welcome->scenes))
         editor.showScene({protocol::SceneRef::Kind::Builtin, *name});
     if (model.upload) {
         const double part = model.upload->size > 0

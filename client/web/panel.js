@@ -149,7 +149,10 @@ export class Panel {
         const shown = this.session_.shown;
         const scenes = this.welcome_.scenes.map((name) => [JSON.stringify(['builtin', name]), name.charAt(0).toUpperCase() + name.slice(1)]);
         for (const [sha256, name] of this.uploaded_) scenes.push([JSON.stringify(['asset', sha256]), name]);
-        fill(byId('scene'), scenes, JSON.stringify(shown.scene));
+        const own = JSON.stringify(shown.scene);
+        // Of a session that is followed, or taken up: a file that was sent from elsewhere.
+        if (shown.scene && !scenes.some(([value]) => value === own)) scenes.push([own, this.session_.scene?.name || 'A file']);
+        fill(byId('scene'), scenes, own);
 
         const target = shown.stream?.target ?? 'composite';
         const targets = [['composite', 'Picture'], ['spectral', 'Spectral map']];

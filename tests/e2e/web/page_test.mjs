@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { startServer } from './server.mjs';
-import { openViewer } from './viewer.mjs';
+import { openPage, openViewer } from './viewer.mjs';
 
 const [program, glbPath] = process.argv.slice(2);
 const glb = await readFile(glbPath);
@@ -162,6 +162,60 @@ await check('the server restarts: the page comes back by itself, and sends the f
     const changed = (await viewer.look()).difference(before);
     assert(changed < 0.01, `the picture is another: ${changed}`);
     return viewer.text('status');
+});
+
+await check('the server is killed: what is moved meanwhile is not lost, and nobody clicks', async () => {
+    await viewer.change(() => viewer.drag([0.5, 0.6], [0.1, 0]));
+    const before = await viewer.look();
+    await server.stop('SIGKILL');
+    await viewer.until(() => page.isVisible('#notices'), 'the loss to be shown');
+    assert.match(await viewer.text('notices'), /^Reconnecting/);
+    assert((await viewer.look()).difference(before) < 1e-6, 'the last picture is gone');
+    await viewer.drag([0.5, 0.6], [0.12, 0]);
+    await viewer.change(async () => (server = await startServer(program, server.port)));
+    const turned = (await viewer.look()).difference(before);
+    assert(turned > 0.005, `the picture is as it was: ${turned}`);
+    await viewer.change(() => viewer.drag([0.62, 0.6], [-0.12, 0]));
+    const back = (await viewer.look()).difference(before);
+    assert(back < 0.3 * turned, `the picture is another: ${back}, turned ${turned}`);
+    assert(await page.isHidden('#notices'), await viewer.text('notices'));
+    return `turned ${turned.toFixed(3)}, back ${back.toFixed(4)}`;
+});
+
+await check('where a frame\'s time goes is told, in the window\'s words', async () => {
+    const rows = await page.$$eval('#frame tr', (all) => all.map((row) => [row.cells[0].textContent, row.cells[1].textContent]));
+    assert.deepEqual(rows.map(([name]) => name),
+        ['hold', 'render', 'encode', 'send', 'decode', 'quality', 'picture', 'payload', 'window', 'dropped', 'photons']);
+    const told = Object.fromEntries(rows);
+    assert.match(told.render, /^[\d.]+ ms$/);
+    assert.match(told.quality, /^(level \d, JPEG \d+|without loss)$/);
+    assert.match(told.picture, /^\d+ x \d+/);
+    assert.match(await viewer.text('age'), /^[\d.]+ ms$/);
+    return `${told.quality}, ${told.picture}, age ${await viewer.text('age')}`;
+});
+
+await check('a second viewer follows the scene with a camera of its own, and says so', async () => {
+    // As on a page that is not secure: it may not copy.
+    await page.evaluate(() => Object.defineProperty(navigator, 'clipboard', { value: undefined }));
+    await page.click('#copy-link');
+    const link = await page.inputValue('#link');
+    assert.match(link, /\?srv=[^#]+#follow=[0-9a-f]{32}$/);
+    const second = await openPage(viewer.browser, link);
+    await second.until(() => second.frames > 0 && second.rests(), 'its picture');
+    assert.equal(await second.page.inputValue('#scene'), await page.inputValue('#scene'));
+    assert.match(await second.text('session'), /^Follows session [0-9a-f]{8}/);
+    assert(await second.page.isDisabled('#light-x') && (await second.page.isHidden('#mode-light')), 'it offers what it cannot do');
+    const before = await second.look();
+    const x = Number(await page.inputValue('#light-x'));
+    await second.change(() => viewer.slide('light-x', x - 0.4));
+    const lit = await second.look();
+    assert(lit.difference(before) > 0.005, 'the light is the old one');
+    await second.until(async () => Math.abs(Number(await second.page.inputValue('#light-x')) - (x - 0.4)) < 0.01, 'its slider');
+    await second.change(() => second.drag([0.5, 0.6], [0.2, 0]));
+    assert((await second.look()).difference(lit) > 0.005, 'its camera does not turn');
+    assert.deepEqual(second.complaints, []);
+    await second.page.close();
+    return link.replace(/^.*\?/, '?');
 });
 
 await check('nothing was reported on the browser console', async () => {

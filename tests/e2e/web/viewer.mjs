@@ -12,6 +12,11 @@ export async function openViewer(url) {
         args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
             '--disable-component-update', '--disable-sync'],
     });
+    return openPage(browser, url);
+}
+
+// Another page of the same browser.
+export async function openPage(browser, url) {
     const page = await browser.newPage({ viewport: { width: 900, height: 480 } });
     const viewer = new Viewer(browser, page);
     await page.goto(url);
