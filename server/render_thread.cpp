@@ -63,6 +63,7 @@ render::Request requestOf(const FrameJob& job) {
     // An answer names its map's hash; the map itself has no anti-aliasing to pay for.
     request.still = job.still || (job.requestId && request.target == render::Target::Spectral);
     request.converge = job.converge;
+    request.viewer = job.session;
     if (job.level != stream::Ladder::kFixed) {
         const auto size = stream::Ladder::scaled({request.width, request.height}, job.level);
         request.width = size.width;
@@ -172,9 +173,10 @@ void RenderThread::serve(Gpu& gpu) {
         if (std::exchange(collecting_, false)) {   // before drawing: a server that always has something to draw collects, too
             std::erase_if(stills_, [this](const auto& still) { return !scheduler_.knows(still.first); });
             const std::vector<const scene::Geometry*> shown = scheduler_.geometryShown();
+            const std::vector<SessionKey> sessions = scheduler_.sessions();
             lock.unlock();
             busySinceUs_ = now;
-            gpu.pipeline.collect(shown);
+            gpu.pipeline.collect(shown, sessions);
             busySinceUs_ = 0;
             lock.lock();
         } else if (std::optional<FrameJob> job = scheduler_.next(now, wakeUs)) {

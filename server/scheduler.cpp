@@ -128,6 +128,14 @@ bool Scheduler::outdated(const FrameJob& job) const {
     return entry == entries_.end() || entry->second.shown.view != job.shown.view;
 }
 
+std::vector<SessionKey> Scheduler::sessions() const {
+    std::vector<SessionKey> sessions;
+    for (const auto& [session, entry] : entries_) {
+        sessions.push_back(session);
+    }
+    return sessions;
+}
+
 std::vector<const scene::Geometry*> Scheduler::geometryShown() const {
     std::vector<const scene::Geometry*> shown;
     const auto add = [&](const Shown& one) {

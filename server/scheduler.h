@@ -69,6 +69,8 @@ class Scheduler {
     void remove(SessionKey session) { entries_.erase(session); }
     bool knows(SessionKey session) const { return entries_.contains(session); }
 
+    std::vector<SessionKey> sessions() const;
+
     // Of every session, what it shows and what it has asked for; the same one may stand there twice.
     std::vector<const scene::Geometry*> geometryShown() const;
 

@@ -28,20 +28,21 @@ std::vector<const scene::Object*> fromBackToFront(const scene::Scene& scene, con
 
 void CameraSide::run(const Inputs& in, gl::StageTimer& timer) {
     const Request& request = in.request;
-    inARow_ = request.target == Target::Composite && (!request.still || in.plan.runs("picture_mean"));
+    canvas_ = &canvases_.try_emplace(request.viewer, shaders_).first->second;
+    canvas_->inARow = request.target == Target::Composite && (!request.still || in.plan.runs("picture_mean"));
     if (in.plan.runs("picture_mean")) return rest(in, timer);
     CameraPaths::Settings settings = !request.still ? kMoving : in.surfaces && in.surfaces->lone() ? kStill : kStillOfMany;
     settings.bounces = request.still ? request.transport.bounces : std::min(settings.bounces, request.transport.bounces);
     draw(in, settings, timer);
-    if (inARow_) progress_.move(pictureKey(request), color_);
-    else progress_.interrupt();
+    if (canvas_->inARow) canvas_->progress.move(pictureKey(request), canvas_->color);
+    else canvas_->progress.interrupt();
 }
 
 // Weights grow as the square of the photons: light of the first frames, which is noisy, soon counts for nothing, without
 // the picture ever beginning anew.
 void CameraSide::rest(const Inputs& in, gl::StageTimer& timer) {
     const bool lone = in.surfaces->lone();
-    const auto sample = progress_.begin(pictureKey(in.request), in.photons * in.photons, lone ? kSamplesOfOne : kSamplesOfMany, color_);
+    const auto sample = canvas_->progress.begin(pictureKey(in.request), in.photons * in.photons, lone ? kSamplesOfOne : kSamplesOfMany, canvas_->color);
     View view = in.view;
     view.shift = 2.0f * sample.shift / glm::vec2(in.width, in.height);
     const Inputs shifted{in.request, in.gpu, view, in.lighting, in.maps, in.plan, in.width, in.height, in.surfaces, in.photons, in.scale};
@@ -53,14 +54,19 @@ void CameraSide::rest(const Inputs& in, gl::StageTimer& timer) {
     }
     settings.bounces = in.request.transport.bounces;
     settings.rotation = sample.rotation;
-    settings.sample = progress_.samples() + 1;
+    settings.sample = canvas_->progress.samples() + 1;
     draw(shifted, settings, timer);
-    timer.stage("picture_mean", [&] { progress_.add(color_, in.scale); });
+    timer.stage("picture_mean", [&] { canvas_->progress.add(canvas_->color, in.scale); });
+}
+
+void CameraSide::keepOnly(std::span<const std::uint64_t> viewers) {
+    std::erase_if(canvases_, [&](const auto& canvas) { return std::ranges::find(viewers, canvas.first) == viewers.end(); });
+    canvas_ = nullptr;
 }
 
 ProgressivePicture::Shown CameraSide::shown(bool exact) const {
-    if (inARow_) return progress_.shown(exact);
-    return {&color_, nullptr, 1.0f, 1.0f};
+    if (canvas_->inARow) return canvas_->progress.shown(exact);
+    return {&canvas_->color, nullptr, 1.0f, 1.0f};
 }
 
 void CameraSide::draw(const Inputs& in, const CameraPaths::Settings& settings, gl::StageTimer& timer) {
@@ -70,7 +76,7 @@ void CameraSide::draw(const Inputs& in, const CameraPaths::Settings& settings, g
     if (in.plan.runs(shading)) {
         timer.stage(shading, [&] {
             receivers_.run({in.gpu, scene.materials, in.lighting, in.view, in.width, in.height, thesis, in.request.forced, in.plan.traced},
-                           {color_, depth_});
+                           {canvas_->color, depth_});
         });
     }
     if (!traced) {
@@ -90,8 +96,8 @@ void CameraSide::tracePaths(const Inputs& in, const CameraPaths::Settings& setti
     const SpectralEntries spectrum = spectralEntries(in.maps.wavelengths);
     const glm::mat3 xyzToRgb(in.maps.wavelengths.xyzToRgb);
     timer.stage("camera_paths", [&] {
-        paths_.run({*in.surfaces, spectrum, xyzToRgb, *in.request.scene, in.gpu, in.lighting, in.view, depth_, settings.sample > 0 ? progress_.mean() : nullptr, in.request.forced.has(Omission::Box)},
-                   settings, color_);
+        paths_.run({*in.surfaces, spectrum, xyzToRgb, *in.request.scene, in.gpu, in.lighting, in.view, depth_, settings.sample > 0 ? canvas_->progress.mean() : nullptr, in.request.forced.has(Omission::Box)},
+                   settings, canvas_->color);
     });
 }
 
@@ -102,7 +108,7 @@ void CameraSide::seeThrough(const Inputs& in, const std::vector<const scene::Obj
     const bool thesis = request.transport.mode == Mode::Thesis;
     const char* const through = thesis ? "thesis_refraction" : "dispersive_refraction";
     const bool refracted = in.plan.runs(through);
-    if (refracted) timer.stage(through, [&] { thesis ? thesisRefraction_.begin(color_) : refraction_.begin(color_); });
+    if (refracted) timer.stage(through, [&] { thesis ? thesisRefraction_.begin(canvas_->color) : refraction_.begin(canvas_->color); });
     for (const scene::Object* object : order) {
         PixelBox box;
         timer.stage("camera_casters", [&] {
@@ -123,11 +129,11 @@ void CameraSide::seeThrough(const Inputs& in, const std::vector<const scene::Obj
                                          glm::vec3(set.xyzToRgb * set.xyz[i]), static_cast<float>(material.absorption.at(set.nm[i]))});
         }
         timer.stage(through, [&] {
-            if (thesis) return thesisRefraction_.run({in.view, front_, back_, depth_, glass, in.lighting}, color_);
+            if (thesis) return thesisRefraction_.run({in.view, front_, back_, depth_, glass, in.lighting}, canvas_->color);
             refraction_.run({in.view, front_, back_, box, object->bounds, depth_, glass, in.lighting, &casters_.frontDepth()},
                             request.still ? DispersiveRefraction::Settings{transport.backSteps, transport.receiverSteps, 6, true, request.forced}
                                           : DispersiveRefraction::Settings{transport.backSteps, std::min(transport.receiverSteps, 3), 1, false, request.forced},
-                            color_);
+                            canvas_->color);
         });
     }
 }

@@ -1,5 +1,9 @@
 // Everything seen from the camera: the receivers and, before them, the casters.
 #pragma once
+#include <cstdint>
+#include <map>
+#include <span>
+
 #include "gl/names.h"
 #include "gl/shader_library.h"
 #include "gl/stage_timer.h"
@@ -34,7 +38,7 @@ class CameraSide {
     };
 
     explicit CameraSide(gl::ShaderLibrary& shaders)
-        : receivers_(shaders), casters_(shaders), refraction_(shaders), thesisRefraction_(shaders), paths_(shaders), progress_(shaders) {}
+        : shaders_(shaders), receivers_(shaders), casters_(shaders), refraction_(shaders), thesisRefraction_(shaders), paths_(shaders) {}
 
     // Submits the passes that the plan runs. At rest the picture is added to the mean of those before.
     void run(const Inputs& in, gl::StageTimer& timer);
@@ -42,9 +46,12 @@ class CameraSide {
     void warmUpReceivers() { receivers_.warmUp(); }
     void warmUpCasters() { refraction_.warmUp(); }
 
-    // RGBA16F or 32F, linear BT.709 radiance over radianceUnit(). `exact`: without passage from moving to rest and back.
+    // Forgets the pictures of all other viewers.
+    void keepOnly(std::span<const std::uint64_t> viewers);
+
+    // Of the last frame: RGBA16F or 32F, linear BT.709 radiance over radianceUnit(). `exact`: without passage from moving to rest and back.
     ProgressivePicture::Shown shown(bool exact) const;
-    const ProgressivePicture& progress() const { return progress_; }
+    const ProgressivePicture& progress() const { return canvas_->progress; }
     const gl::Texture& front() const { return front_; }   // layer of the last caster, for looking at the pass
 
    private:
@@ -53,14 +60,22 @@ class CameraSide {
     void tracePaths(const Inputs& in, const CameraPaths::Settings& settings, gl::StageTimer& timer);
     void seeThrough(const Inputs& in, const std::vector<const scene::Object*>& order, gl::StageTimer& timer);
 
+    gl::ShaderLibrary& shaders_;
     CameraReceivers receivers_;
     CameraCasters casters_;
     DispersiveRefraction refraction_;
     ThesisRefraction thesisRefraction_;
     CameraPaths paths_;
-    ProgressivePicture progress_;
-    bool inARow_ = false;                         // the last picture is one of those that progress_ watches
-    gl::Texture color_, depth_, front_, back_;
+    // What one viewer looks at, from frame to frame: others' frames come in between.
+    struct Canvas {
+        explicit Canvas(gl::ShaderLibrary& shaders) : progress(shaders) {}
+        gl::Texture color;
+        ProgressivePicture progress;
+        bool inARow = false;                      // the last picture is one of those that `progress` watches
+    };
+    std::map<std::uint64_t, Canvas> canvases_;
+    Canvas* canvas_ = nullptr;                    // of the last frame
+    gl::Texture depth_, front_, back_;
 };
 
 }  // namespace caustream::render

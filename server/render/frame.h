@@ -93,6 +93,7 @@ struct Request {
     bool wavelengthBands = false;           // Spectral: one band per wavelength instead of RGB
     optics::Observer observer = optics::Observer::Cie1931;   // the fit: to compare with references made with it
     int width = 512, height = 512;          // of the picture; the spectral map has transport.mapSize a side
+    std::uint64_t viewer = 0;               // whose picture it is: what adds up at rest is kept for each
     bool still = false;                     // 4x anti-aliasing, ledger always counted
     bool converge = false;                  // nothing moves: adds photons to this light pose's map, samples to the picture
     bool countResiduals = false;            // traces anew and fills FrameStats::residuals

@@ -34,7 +34,7 @@ namespace caustream::render {
 
 namespace {
 
-constexpr std::size_t kMostLightMaps = 4;    // poses kept, about 10 MB each at 512^2
+constexpr std::size_t kMostLightMaps = 4;    // poses kept for one viewer, about 10 MB each at 512^2; one more for each other
 constexpr int kSoftwareNodes = 4;            // of a continuous spectrum on software GL
 constexpr std::size_t kMostChoices = 16;     // of budgets and targets, remembered so that they do not flicker
 constexpr float kAutoKey = 0.8f;             // picture value of a white receiver that faces the light at the caustic
@@ -144,6 +144,7 @@ struct Pipeline::Impl {
 
     std::vector<std::unique_ptr<SceneEntry>> scenes;
     std::list<LightEntry> lights;              // newest first
+    std::size_t viewers = 1;
     bool lightReused = false;                  // by the frame that is being drawn
     gl::Texture output;
     gl::Buffer planes;
@@ -287,7 +288,7 @@ LightMaps& Pipeline::Impl::lightMaps(const Request& request, SceneEntry& entry, 
     plan = makePlan(facts, request);   // which wavelengths the light has to be fitted to
     if (found != lights.end()) {
         lights.splice(lights.begin(), lights, found);
-    } else if (lights.size() < kMostLightMaps) {
+    } else if (lights.size() < kMostLightMaps + viewers - 1) {
         lights.emplace_front();
     } else {
         lights.splice(lights.begin(), lights, std::prev(lights.end()));   // the oldest pose's images serve again
@@ -388,7 +389,7 @@ void Pipeline::warmUp(const std::function<void(int, int)>& progress) {
         request.transport.photonGrid = request.transport.mapSize = 64;
         run(request);
     }
-    collect({});
+    collect({}, {});
     impl_->calibration = {};   // what first frames take says nothing
     report(4);
 }
@@ -511,7 +512,10 @@ PixelLayout Pipeline::jpegPixels(bool halfChroma) const {
     return halfChroma ? PixelLayout::Yuv420 : PixelLayout::Yuv444;
 }
 
-void Pipeline::collect(std::span<const scene::Geometry* const> shown) {
+void Pipeline::collect(std::span<const scene::Geometry* const> shown, std::span<const std::uint64_t> viewers) {
+    impl_->cameraSide.keepOnly(viewers);
+    impl_->viewers = std::max<std::size_t>(viewers.size(), 1);
+    while (impl_->lights.size() >= kMostLightMaps + impl_->viewers) impl_->lights.pop_back();
     std::vector<const scene::Geometry*> gone;
     std::erase_if(impl_->scenes, [&](const auto& entry) {
         const scene::Geometry* geometry = entry->geometry.get();

@@ -29,8 +29,9 @@ class Pipeline {
     // What `Request::pixels` is best for a JPEG on this GPU; `halfChroma`: of 4:2:0.
     PixelLayout jpegPixels(bool halfChroma) const;
 
-    // Forgets what was made for geometry that is not `shown`, whoever else may hold it: it is made again when it is shown again.
-    void collect(std::span<const scene::Geometry* const> shown);
+    // Forgets what was made for geometry that is not `shown` and for other viewers than these: it is made again when it is
+    // wanted again. So many viewers, so many poses of light are kept, so that all of them can converge.
+    void collect(std::span<const scene::Geometry* const> shown, std::span<const std::uint64_t> viewers);
 
    private:
     struct Impl;

@@ -9,7 +9,7 @@ namespace caustream::render {
 
 namespace {
 
-constexpr std::size_t kMostPictures = 4;   // views at rest, of several viewers: 6 MB each at 512^2
+constexpr std::size_t kMostPictures = 2;   // views at rest of one viewer: 6 MB each at 512^2
 constexpr double kMostChange = 0.015;      // of the mean luminance, a frame
 constexpr double kMostShare = 0.2;         // of a picture that is as bright: a dissolve of five frames
 

@@ -1,4 +1,4 @@
-// The picture at rest: each frame of an unchanged view adds a sample a pixel and a few wavelengths to a mean. It takes the
+// One viewer's picture at rest: each frame of an unchanged view adds a sample a pixel and a few wavelengths to a mean. It takes the
 // place of the moving picture, and gives it back, without a jump in brightness.
 #pragma once
 #include <cstdint>

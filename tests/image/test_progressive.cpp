@@ -1,5 +1,6 @@
 // The picture at rest through the whole pipeline: it adds up, it takes the place of the moving one without a jump in
 // brightness and gives it back.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -188,6 +189,52 @@ TEST_F(Progressive, AGlassOfWaterHasNoBlackHoles) {
         sum += mean[i] + mean[i + 1] + mean[i + 2];
     }
     EXPECT_GT(darkest, 0.03 * sum / double(mean.size() / 3));
+}
+
+TEST_F(Progressive, ViewersDoNotDisturbEachOther) {
+    // The frames of one that rests, moves and rests, alone and with another's in between.
+    const render::Request move = moving(), rest = atRest(move);
+    render::Request other = moving();
+    other.viewer = 2;
+    other.camera.eye = {0.4f, 0.7f, 1.3f};
+    const std::vector<render::Request> played = {move, move, rest, rest, rest, move, move, rest, rest};
+    const auto alone = freshPipeline(), shared = freshPipeline();
+    for (std::size_t i = 0; i < played.size(); ++i) {
+        const auto expected = alone->run(played[i]).pixels;
+        shared->run(i % 3 == 0 ? atRest(other) : other);
+        EXPECT_EQ(shared->run(played[i]).pixels, expected) << "frame " << i;
+    }
+}
+
+TEST_F(Progressive, EveryViewerConvergesHoweverManyThereAre) {
+    constexpr int kViewers = 7;
+    const auto pipeline = freshPipeline();
+    std::vector<render::Request> viewers;
+    std::vector<std::uint64_t> keys;
+    std::vector<const scene::Geometry*> shown;
+    for (int i = 0; i < kViewers; ++i) {
+        render::Request request = atRest(moving(render::Sample::U8, true));
+        scene::Scene turned = *request.scene;
+        turned.lights.front().position.x += 0.01f * static_cast<float>(i);
+        request.scene = std::make_shared<const scene::Scene>(std::move(turned));
+        request.viewer = static_cast<std::uint64_t>(i) + 1;
+        request.transport.targetError = 0.2;
+        viewers.push_back(request);
+        keys.push_back(request.viewer);
+        shown.push_back(request.scene->geometry.get());
+    }
+    pipeline->collect(shown, keys);
+    std::vector<bool> done(kViewers);
+    for (int frame = 0; frame < 120; ++frame) {
+        for (int i = 0; i < kViewers; ++i) {
+            const auto& reached = pipeline->run(viewers[static_cast<std::size_t>(i)]).stats.convergence;
+            done[static_cast<std::size_t>(i)] = done[static_cast<std::size_t>(i)] || (reached && reached->converged);
+        }
+        if (std::ranges::all_of(done, [](bool one) { return one; })) {
+            return;
+        }
+    }
+    EXPECT_THAT(done, testing::Each(true)) << "each in turn, and none of them begins anew";
 }
 
 }  // namespace
