@@ -1,10 +1,12 @@
 // The page in a real browser, and what its canvas shows.
 import { chromium } from 'playwright-core';
 
-// No frame for this long: the picture has settled. A composite picture ends with a still, which comes a while after.
+// No frame for this long: the picture has settled. A composite picture ends with a still without loss, which comes a
+// while after.
 const kQuietMs = 700, kQuietAfterStillMs = 250;
 const kSettleMs = 60_000;    // not a wish for speed: only a sign that nothing will come
 const kGridWidth = 120;
+const kJpeg = 1;
 
 export async function openViewer(url) {
     const browser = await chromium.launch({
@@ -40,7 +42,7 @@ class Viewer {
             ++this.frames;
             this.lastFrameMs = Date.now();
             this.lastFlags = payload.readUInt32LE(16);
-            this.lastIsStill = (this.lastFlags & 1) === 1;
+            this.lastIsFinal = (this.lastFlags & 1) === 1 && payload.readUInt8(13) !== kJpeg;
             this.lastIsComposite = payload.readUInt8(12) === 1;
         }));
     }
@@ -54,7 +56,7 @@ class Viewer {
 
     rests() {
         const quietMs = Date.now() - this.lastFrameMs;
-        return this.lastIsComposite ? this.lastIsStill && quietMs > kQuietAfterStillMs : quietMs > kQuietMs;
+        return this.lastIsComposite ? this.lastIsFinal && quietMs > kQuietAfterStillMs : quietMs > kQuietMs;
     }
 
     async until(condition, what) {
