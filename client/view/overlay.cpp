@@ -26,7 +26,7 @@ void drawProgress(const protocol::Convergence& convergence, float pictureWidth) 
 void drawMessages(const Model& model, float pictureWidth) {
     std::vector<Message> lines;
     for (const auto& [key, status] : model.statuses)
-        lines.push_back({status.level == protocol::Status::Level::Error, status.message});
+        lines.push_back({status.level != protocol::Status::Level::Info, status.message});
     lines.insert(lines.end(), model.messages.begin(), model.messages.end());
     if (lines.empty()) return;
     ImGui::SetNextWindowPos({12, ImGui::GetIO().DisplaySize.y - 12}, ImGuiCond_Always, {0, 1});

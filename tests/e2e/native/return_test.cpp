@@ -37,6 +37,7 @@ struct Viewer {
                 if (const auto* message = std::get_if<protocol::Welcome>(&event)) welcome = *message;
                 if (const auto* message = std::get_if<protocol::StateMessage>(&event)) state = message->state;
                 if (const auto* message = std::get_if<protocol::ErrorMessage>(&event)) error = message->message;
+                if (const auto* ok = std::get_if<protocol::Ok>(&event)) recording = ok->recording.value_or(recording);
                 if (const auto* status = std::get_if<protocol::Status>(&event)) statuses[status->key] = status->message;
                 if (const auto* end = std::get_if<connection::Disconnected>(&event)) ended = *end;
             }
@@ -56,7 +57,7 @@ struct Viewer {
 
     std::optional<protocol::Welcome> welcome;
     Json state;
-    std::string error;
+    std::string error, recording;
     std::map<std::string, std::string> statuses;
     std::optional<connection::Disconnected> ended;
     int frames = 0;
@@ -137,6 +138,63 @@ TEST(Return, OneWhoseSessionWasTakenDoesNotTakeItBack) {
     viewer.connection.reconnect();
     EXPECT_TRUE(viewer.until([&] { return viewer.welcome.has_value(); }));
     EXPECT_TRUE(viewer.sees(1));
+}
+
+TEST(Tls, ACertificateIsCheckedAndWhatIsWrongWithItSaid) {
+    const TemporaryFolder folder;
+    const auto made = [&](const std::string& name, const std::string& madeOutFor) {
+        const Result openssl = run("openssl", {"req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=test", "-addext",
+                                               "subjectAltName=" + madeOutFor, "-keyout", folder / (name + ".key"), "-out", folder / (name + ".pem")});
+        EXPECT_EQ(openssl.exitCode, 0) << openssl.err;
+        return folder / (name + ".pem");
+    };
+    const std::string good = made("good", "IP:127.0.0.1"), elsewhere = made("elsewhere", "DNS:elsewhere.example");
+    const auto serverWith = [&](const std::string& name) {
+        return Server({"--port", "0", "--tls-cert", folder / (name + ".pem"), "--tls-key", folder / (name + ".key")});
+    };
+    const auto attempt = [](const Server& server, const std::string& caFile) {
+        connection::Options options = optionsFor(server.url());
+        options.caFile = caFile;
+        return std::make_unique<Viewer>(options);
+    };
+    const auto expectRefused = [](Viewer& viewer, const std::string& words) {
+        ASSERT_TRUE(viewer.until([&] { return viewer.ended.has_value(); }));
+        EXPECT_NE(viewer.ended->why.find(words), std::string::npos) << viewer.ended->why;
+        EXPECT_FALSE(viewer.ended->willRetry) << "it takes a person";
+    };
+
+    const Server server = serverWith("good");
+    EXPECT_TRUE(server.url().starts_with("https://")) << server.url();
+    EXPECT_TRUE(attempt(server, good)->sees(1));
+    expectRefused(*attempt(server, ""), "self-signed certificate");
+    expectRefused(*attempt(server, elsewhere), "not trusted");
+    expectRefused(*attempt(serverWith("elsewhere"), elsewhere), "name or address");
+    const Server plain;
+    Viewer viewer(optionsFor("https://127.0.0.1:" + plain.port()));
+    ASSERT_TRUE(viewer.until([&] { return viewer.ended.has_value(); }));
+    EXPECT_NE(viewer.ended->why.find("TLS"), std::string::npos) << viewer.ended->why;
+}
+
+TEST(Record, GoesOnWithTheNextServer) {
+    const TemporaryFolder folder;
+    const auto files = [&] { return std::distance(std::filesystem::directory_iterator(folder.path), {}); };
+    const auto start = [&](const std::string& port) {
+        return std::make_unique<Server>(std::vector<std::string>{"--port", port, "--record-dir", folder.path});
+    };
+    auto server = start("0");
+    Viewer viewer(optionsFor(server->url()));
+    ASSERT_TRUE(viewer.sees(1));
+    viewer.connection.record(true);
+    ASSERT_TRUE(viewer.until([&] { return !viewer.recording.empty(); })) << viewer.error;
+    EXPECT_TRUE(std::filesystem::exists(folder / viewer.recording));
+    const std::string first = std::exchange(viewer.recording, "");
+
+    const std::string port = server->port();
+    server->kill();
+    server = start(port);
+    ASSERT_TRUE(viewer.until([&] { return !viewer.recording.empty(); })) << viewer.error;
+    EXPECT_NE(viewer.recording, first);
+    EXPECT_EQ(files(), 2);
 }
 
 TEST(Follow, ShowsTheOthersSceneWithACameraOfItsOwn) {
