@@ -165,7 +165,8 @@ void play(int port, std::uint64_t untilUs, std::uint32_t seed, Counts& counts) {
 
 Report soak(const ScenarioOptions& options) {
     const double minutes = options.minutes > 0 ? options.minutes : kShortMinutes;
-    const ServerChild server(options.server, {"--gpu", options.gpu, "--max-sessions", "16"});   // who leaves may not be gone yet
+    const ServerChild server(options.server, {"--gpu", options.gpu, "--max-sessions", "16",   // who leaves may not be gone yet
+                                               "--asset-cache-mb", "8"});                    // full within minutes, not hours
     const auto lengthUs = static_cast<std::uint64_t>(minutes * 60e6);
     const auto firstUs = static_cast<std::uint64_t>(kFirstShare * static_cast<double>(lengthUs));
     warmUp(server.port());
