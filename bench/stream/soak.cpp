@@ -136,8 +136,9 @@ struct Resources {
     double residentMib = 0, descriptors = 0, glObjects = 0;
 };
 
-// Once everyone has left: what the server holds by itself.
+// Once everyone has left: what the server holds by itself. Nothing of one that has ended.
 Resources atRest(const ServerChild& server) {
+    if (!server.alive()) return {};
     for (int i = 0; i < 100 && server.metric("caustream_connections").value_or(0) > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     std::this_thread::sleep_for(std::chrono::milliseconds(1000));
     return {server.residentMib(), static_cast<double>(server.descriptors()), server.metric("caustream_gl_objects").value_or(0)};
