@@ -86,10 +86,13 @@ void drawSession(const Model& model, Controls& controls) {
     ImGui::SameLine();
     if (ImGui::SmallButton("copy")) ImGui::SetClipboardText(session.c_str());
     if (!model.following.empty() || !model.can("record")) return;
-    bool recording = !model.recording.empty();
+    const bool recording = !model.recording.empty();
     ImGui::SameLine();
-    if (ImGui::Checkbox("record", &recording)) controls.record = recording;
-    if (!model.recording.empty()) ImGui::TextDisabled("recording to %s", model.recording.c_str());
+    if (ImGui::SmallButton(recording ? "stop recording" : "record")) controls.record = !recording;
+    if (!recording) return;
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextDisabled("recording to %s", model.recording.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 void drawPicture(Model& model, Controls& controls, Editor& editor) {
