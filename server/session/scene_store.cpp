@@ -19,29 +19,13 @@ std::size_t bytesOf(const scene::Geometry& geometry) {
 
 }  // namespace
 
-std::shared_ptr<const scene::Scene> SceneStore::share(Kept& kept) {
-    if (auto scene = kept.shared.lock()) {
-        return scene;
-    }
-    std::shared_ptr<const scene::Geometry> geometry = kept.shown.lock();
-    if (!geometry) {
-        const scene::Geometry* address = kept.scene.geometry.get();
-        geometry = {address, [owner = kept.scene.geometry](const scene::Geometry*) {}};
-    }
-    auto scene = std::make_shared<scene::Scene>(kept.scene);
-    scene->geometry = geometry;
-    kept.shown = geometry;
-    kept.shared = scene;
-    return scene;
-}
-
 std::shared_ptr<const scene::Scene> SceneStore::find(const protocol::SceneRef& ref) {
     const auto found = entries_.find(keyOf(ref));
     if (found == entries_.end()) {
         return nullptr;
     }
     order_.splice(order_.begin(), order_, found->second.place);
-    return share(found->second.kept);
+    return found->second.scene;
 }
 
 std::shared_ptr<const scene::Scene> SceneStore::put(const protocol::SceneRef& ref, scene::Scene scene) {
@@ -52,9 +36,8 @@ std::shared_ptr<const scene::Scene> SceneStore::put(const protocol::SceneRef& re
     }
     order_.push_front(key);
     const std::size_t bytes = bytesOf(*scene.geometry);
-    Entry& entry = entries_[key];
-    entry = {.kept = {.scene = std::move(scene), .bytes = bytes, .shared = {}, .shown = {}}, .place = order_.begin()};
-    auto shared = share(entry.kept);
+    auto shared = std::make_shared<const scene::Scene>(std::move(scene));
+    entries_[key] = {.scene = shared, .bytes = bytes, .place = order_.begin()};
     trim();
     return shared;
 }
@@ -64,9 +47,8 @@ void SceneStore::trim() {
     for (auto place = order_.begin(); place != order_.end();) {
         const bool newest = place == order_.begin();  // it was uploaded to be shown next
         const auto entry = entries_.find(*place++);
-        const Kept& kept = entry->second.kept;
-        if (kept.idle() && (idle += kept.bytes) > budgetBytes_ && !newest) {
-            idle -= kept.bytes;
+        if (entry->second.idle() && (idle += entry->second.bytes) > budgetBytes_ && !newest) {
+            idle -= entry->second.bytes;
             order_.erase(entry->second.place);
             entries_.erase(entry);
         }
@@ -76,7 +58,7 @@ void SceneStore::trim() {
 std::size_t SceneStore::idleBytes() const {
     std::size_t bytes = 0;
     for (const auto& [key, entry] : entries_) {
-        bytes += entry.kept.idle() ? entry.kept.bytes : 0;
+        bytes += entry.idle() ? entry.bytes : 0;
     }
     return bytes;
 }

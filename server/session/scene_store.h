@@ -29,21 +29,14 @@ class SceneStore {
     std::size_t idleBytes() const;  // of scenes that no one shows
 
    private:
-    // Viewers and the renderer hold the geometry by a pointer of their own, whose count is theirs alone: the renderer sees
-    // that no one shows it any more though it is kept here, and frees its copy on the GPU.
-    struct Kept {
-        scene::Scene scene;
-        std::size_t bytes = 0;
-        std::weak_ptr<const scene::Scene> shared;
-        std::weak_ptr<const scene::Geometry> shown;
-        bool idle() const { return shown.expired(); }
-    };
     using Order = std::list<std::string>;
     struct Entry {
-        Kept kept;
+        std::shared_ptr<const scene::Scene> scene;
+        std::size_t bytes = 0;
         Order::iterator place;
+        // Viewers hold the geometry, by this scene or by one with their overrides; so does the renderer until it collects.
+        bool idle() const { return scene.use_count() == 1 && scene->geometry.use_count() == 1; }
     };
-    std::shared_ptr<const scene::Scene> share(Kept& kept);
 
     std::size_t budgetBytes_;
     std::map<std::string, Entry> entries_;
