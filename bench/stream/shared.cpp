@@ -15,7 +15,7 @@ namespace {
 using protocol::Json;
 
 constexpr int kViewers = 5;
-constexpr double kNoise = 1.1;   // of a time measured against the sum of others
+constexpr double kNoise = 1.0;
 // docs/pipeline.md: what depends on the light and not on the camera.
 constexpr std::array kLightSide = {"caster_layers", "photon_list", "receiver_depth", "shadow",   "photon_trace",
                                    "photon_paths",  "map_resolve", "spectral_step",  "gap_fill", "outer_map"};
