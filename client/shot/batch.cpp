@@ -166,7 +166,8 @@ void Batch::work(std::unique_ptr<Session> session, int worker) {
     if (!session) session = connect(why);
     while (session && !stop_) {
         std::unique_lock lock(mutex_);
-        if (waiting_.empty()) break;
+        // A viewer's pictures at rest are its own: lines that converge share one viewer's, however many there are.
+        if (waiting_.empty() || (worker > 0 && waiting_.front().job->converge)) break;
         const Work work = waiting_.front();
         waiting_.pop_front();
         lock.unlock();

@@ -5,7 +5,7 @@
 namespace caustream::shot {
 namespace {
 
-// A server keeps the light of four poses; a line needs two where it asks for bands, too.
+// A server keeps the light of four poses and more; a line needs two where it asks for bands, too.
 constexpr std::size_t kStillsAtOnce = 2;
 
 }  // namespace
