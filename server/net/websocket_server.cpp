@@ -1,20 +1,18 @@
 #include "net/websocket_server.h"
 
-#include <arpa/inet.h>
 #include <linux/tcp.h>
-#include <openssl/ssl.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <exception>
 #include <utility>
 
 #include "error.h"
 #include "log.h"
+#include "net/admission.h"
 #include "net/http_exchange.h"
+#include "net/listening.h"
 #include "protocol/messages.h"
 #include "session/clock.h"
 
@@ -33,28 +31,6 @@ constexpr std::size_t kCostOfDrop = 64;           // bytes that a message counts
 // Pieces that a message may come in, and one more for so many of its bytes: fragments and TCP segments, not letters.
 constexpr std::size_t kMostPieces = 64, kBytesPerPiece = 256;
 
-// Fails with the system's own words where libwebsockets would only say that it could not.
-void probePort(const ServerOptions& options) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(options.port));
-    if (inet_pton(AF_INET, options.bind.c_str(), &address.sin_addr) != 1) {
-        throw Error("bind address; '" + options.bind + "' is not an IPv4 address; try 127.0.0.1 or 0.0.0.0");
-    }
-    const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const int yes = 1;
-    setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    const int result = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-    const int problem = errno;
-    const bool listens = result == 0 && listen(probe, 1) == 0;
-    const int listenProblem = errno;
-    close(probe);
-    if (!listens) {
-        throw Error(std::string(std::strerror(result == 0 ? listenProblem : problem)) + "; " + options.bind + ":" +
-                    std::to_string(options.port) + "; stop the program that holds the port, or pass --port 0 for a free one");
-    }
-}
-
 void logLine(int level, const char* text) {
     std::string_view line = text;
     while (line.ends_with('\n')) {
@@ -71,31 +47,7 @@ std::uint64_t ackedBytes(lws* socket) {
     return info.tcpi_bytes_acked;
 }
 
-// Whether a list of subprotocols, as the header has it, holds ours.
-bool namesUs(std::string_view list) {
-    while (!list.empty()) {
-        const std::size_t comma = std::min(list.find(','), list.size());
-        std::string_view name = list.substr(0, comma);
-        name.remove_prefix(std::min(name.find_first_not_of(" \t"), name.size()));
-        name = name.substr(0, name.find_last_not_of(" \t") + 1);
-        if (name == protocol::kSubprotocol) {
-            return true;
-        }
-        list.remove_prefix(std::min(comma + 1, list.size()));
-    }
-    return false;
-}
-
 void kill(lws* socket) { lws_set_timeout(socket, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC); }
-
-void addTls(lws_context_creation_info& info, const ServerOptions& options) {
-    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-    // Plain http on this port gets an answer that says so, and nothing else: refuse().
-    info.options |= LWS_SERVER_OPTION_ALLOW_NON_SSL_ON_SSL_PORT | LWS_SERVER_OPTION_ALLOW_HTTP_ON_HTTPS_LISTENER;
-    info.ssl_cert_filepath = options.tlsCert.c_str();
-    info.ssl_private_key_filepath = options.tlsKey.c_str();
-    info.ssl_options_set = SSL_OP_NO_SSLv3 | SSL_OP_NO_TLSv1 | SSL_OP_NO_TLSv1_1 | SSL_OP_NO_COMPRESSION | SSL_OP_NO_RENEGOTIATION;
-}
 
 }  // namespace
 
@@ -150,11 +102,11 @@ struct WebSocketServer::Callbacks {
                 return guarded([&] { return server(socket).runPosted(), 0; });
             case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION: return -1;  // "http" is no subprotocol, though libwebsockets knows it
             case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
-                return guarded([&] { return server(socket).refuse(socket, true); });
+                return guarded([&] { return refuse(socket, server(socket).options_, true); });
             case LWS_CALLBACK_HTTP:
                 return guarded([&] {
                     server(socket).sockets_.asked(socket, session::nowUs());
-                    if (const int refused = server(socket).refuse(socket, false)) {
+                    if (const int refused = refuse(socket, server(socket).options_, false)) {
                         return refused;
                     }
                     const HttpRequest request{std::string(static_cast<const char*>(in)),
@@ -175,7 +127,7 @@ struct WebSocketServer::Callbacks {
             case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
                 return guarded([&] {
                     const std::string path = requestHeader(socket, WSI_TOKEN_GET_URI);
-                    const bool page = server(socket).allows(socket);
+                    const bool page = allowsOrigin(socket, server(socket).options_);
                     if (path == "/ws" && page) {
                         return 0;
                     }
@@ -360,11 +312,6 @@ void WebSocketServer::drop(Connection& connection, std::size_t bytes) {
     }
 }
 
-bool WebSocketServer::allows(lws* socket) const {
-    const std::string origin = requestHeader(socket, WSI_TOKEN_ORIGIN);
-    return sameHost(origin, requestHeader(socket, WSI_TOKEN_HOST)) || std::ranges::find(options_.allowedOrigins, origin) != options_.allowedOrigins.end();
-}
-
 bool WebSocketServer::receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final,
                               std::size_t remaining) {
     if (connection.closing()) {
@@ -419,30 +366,6 @@ int WebSocketServer::write(Connection& connection) {
     lws_close_reason(connection.socket_, static_cast<lws_close_status>(connection.closeCode_),
                      reinterpret_cast<unsigned char*>(reason.data()), reason.size());
     return -1;
-}
-
-int WebSocketServer::refuse(lws* socket, bool upgrade) const {
-    if (!options_.tlsCert.empty() && !lws_is_ssl(socket)) {
-        lws_return_http_status(socket, 400, "This port speaks TLS: https:// and wss://");
-        return -1;
-    }
-    if (upgrade && requestHeader(socket, WSI_TOKEN_UPGRADE) != "websocket") {  // h2c would open the HTTP/2 code
-        lws_return_http_status(socket, 400, "Upgrade must be websocket");
-        return -1;
-    }
-    if (upgrade && !namesUs(requestHeader(socket, WSI_TOKEN_PROTOCOL))) {
-        lws_return_http_status(socket, 400, "Sec-WebSocket-Protocol must be caustream.v1");
-        return -1;
-    }
-    if (options_.checkHost && !isLocalName(requestHeader(socket, WSI_TOKEN_HOST))) {
-        lws_return_http_status(socket, 403, "Host not allowed");
-        return -1;
-    }
-    if (!upgrade && lws_hdr_total_length(socket, WSI_TOKEN_GET_URI) <= 0) {
-        lws_return_http_status(socket, 405, "Only GET is answered");
-        return -1;
-    }
-    return 0;
 }
 
 }  // namespace caustream::net

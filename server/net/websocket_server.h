@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "net/http.h"
+#include "net/server_options.h"
 #include "net/socket_table.h"
 #include "session/outbox.h"
 
@@ -62,17 +63,6 @@ class Connection {
     std::uint64_t movedUs_ = 0;     // and when that last grew, or nothing waited
 };
 
-struct ServerOptions {
-    std::string bind = "127.0.0.1";
-    int port = 0;  // 0: any free one
-    std::size_t maxTextBytes = 64u << 10, maxBinaryBytes = 1u << 20;
-    int pingS = 15, deadS = 30;
-    std::string tlsCert, tlsKey;               // PEM files; empty: plain http
-    std::vector<std::string> allowedOrigins;   // of pages besides our own
-    std::size_t maxConnections = 256, maxPerAddress = 64;  // sockets, those of plain HTTP too
-    bool checkHost = true;  // only this machine's own names in Host: a page elsewhere cannot rebind its name to us
-};
-
 // What the port had to do about others' sockets, since the start.
 struct SocketCounts {
     std::size_t open = 0;
@@ -103,10 +93,8 @@ class WebSocketServer {
     void tick();
     void endLate(std::uint64_t nowUs);
     void drop(Connection& connection, std::size_t bytes);
-    bool allows(lws* socket) const;
     bool receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final, std::size_t remaining);
     int write(Connection& connection);
-    int refuse(lws* socket, bool upgrade) const;
 
     ServerOptions options_;
     Endpoint& endpoint_;
