@@ -1,5 +1,6 @@
 #include "client/connection/address.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace caustream::connection {
@@ -7,6 +8,19 @@ namespace caustream::connection {
 std::string Address::text() const {
     const bool v6 = host.find(':') != std::string::npos;
     return (tls ? "wss://" : "ws://") + (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) + path;
+}
+
+Address anyServer(Address address) {
+    std::string kept;
+    const std::size_t query = address.path.find('?');
+    std::string_view rest = query == std::string::npos ? std::string_view{} : std::string_view(address.path).substr(query + 1);
+    while (!rest.empty()) {
+        const std::string_view field = rest.substr(0, rest.find('&'));
+        rest.remove_prefix(std::min(rest.size(), field.size() + 1));
+        if (!field.starts_with("srv=")) kept.append(1, kept.empty() ? '?' : '&').append(field);
+    }
+    address.path = address.path.substr(0, query) + kept;
+    return address;
 }
 
 tl::expected<Address, std::string> parseAddress(std::string_view url) {

@@ -17,6 +17,9 @@ struct Address {
     std::string text() const;  // "ws://host:port/path", "wss://..." with TLS
 };
 
+// The same place without ?srv=: any server behind a load balancer.
+Address anyServer(Address address);
+
 // Port 80, or 443 with TLS, when none is said, path "/ws" when none or "/" is said. The error is a sentence.
 tl::expected<Address, std::string> parseAddress(std::string_view url);
 

@@ -221,6 +221,7 @@ void Connection::Impl::onText(std::string_view text) {
                                value.serverUs, lastHeardUs});
             } else if constexpr (std::is_same_v<T, protocol::Goaway>) {
                 comeBack = comeBackMs(value.reconnectMs, value.jitterMs, chance());
+                options.address = anyServer(options.address);  // the one that was asked for is going
                 tell(std::move(value));
             } else {
                 tell(std::move(value));

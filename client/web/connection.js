@@ -108,6 +108,9 @@ export class Connection {
             this.handlers_.roundTrip(message.t_us, message.server_us, performance.now() * 1000);
         } else if (message.op === 'goaway') {
             this.comeBackMs_ = comeBackMs(message);
+            const url = new URL(this.url_);
+            url.searchParams.delete('srv');     // the one that was asked for is going
+            this.url_ = url.href;
         } else {
             this.handlers_[message.op]?.(message);
         }

@@ -26,6 +26,7 @@ constexpr std::size_t kSendBytes = 4u << 20;      // per write: below it every f
 constexpr unsigned kOwnDescriptors = 16;          // libwebsockets' own, beside the sockets
 constexpr int kTickUs = 250'000;
 constexpr int kCloseS = 5;  // for the far side to take what is left before its socket is dropped
+constexpr std::size_t kReasonBytes = 120;         // a close frame holds 125 with its code
 constexpr std::size_t kMostDropped = 1u << 20;    // bytes read of who was told off, before reading ends
 constexpr std::size_t kCostOfDrop = 64;           // bytes that a message counts for there beside its own
 // Pieces that a message may come in, and one more for so many of its bytes: fragments and TCP segments, not letters.
@@ -151,6 +152,7 @@ struct WebSocketServer::Callbacks {
                     return going ? 0 : -1;
                 });
             case LWS_CALLBACK_SERVER_WRITEABLE: return guarded([&] { return server(socket).write(**slot); });
+            case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE: return (*slot)->saidGoodbye_ ? -1 : 0;  // which is its answer, or a goodbye to be answered
             case LWS_CALLBACK_CLOSED:
                 if (slot && *slot) {
                     guarded([&] { return server(socket).endpoint_.closed(**slot), 0; });
@@ -357,15 +359,25 @@ int WebSocketServer::write(Connection& connection) {
         connection.requestWrite();
         return 0;
     }
-    if (!connection.closing()) {
-        connection.waiting_ = false;
-        return 0;
+    connection.waiting_ = false;
+    if (connection.closing() && !std::exchange(connection.saidGoodbye_, true)) {
+        return sayGoodbye(connection);
     }
-    std::string& reason = connection.closeReason_;
-    reason.resize(std::min<std::size_t>(reason.size(), 120));  // a close frame holds 125 bytes with its code
-    lws_close_reason(connection.socket_, static_cast<lws_close_status>(connection.closeCode_),
-                     reinterpret_cast<unsigned char*>(reason.data()), reason.size());
-    return -1;
+    return 0;
+}
+
+// A close frame, and the socket stays until the far side has answered it (RFC 6455, 7.1.1): what it sent meanwhile and nobody
+// reads would make the kernel reset the connection, and with that the far side forget what it was told. libwebsockets'
+// own closing goes as soon as it reads anything.
+int WebSocketServer::sayGoodbye(Connection& connection) {
+    const std::size_t reasonBytes = std::min(connection.closeReason_.size(), kReasonBytes);
+    stream::WireBuffer frame(4 + reasonBytes);
+    frame.data()[0] = 0x88;  // final, a close (RFC 6455, 5.2); libwebsockets has no name for writing one
+    frame.data()[1] = static_cast<std::uint8_t>(2 + reasonBytes);
+    frame.data()[2] = static_cast<std::uint8_t>(connection.closeCode_ >> 8);
+    frame.data()[3] = static_cast<std::uint8_t>(connection.closeCode_ & 255);
+    connection.closeReason_.copy(reinterpret_cast<char*>(frame.data()) + 4, reasonBytes);
+    return lws_write(connection.socket_, frame.data(), frame.size(), LWS_WRITE_RAW) < 0 ? -1 : 0;
 }
 
 }  // namespace caustream::net

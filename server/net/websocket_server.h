@@ -55,6 +55,7 @@ class Connection {
     std::string partial_;      // of a message that arrives in pieces
     std::size_t pieces_ = 0;   // of that message, so far
     std::uint16_t closeCode_ = 0;
+    bool saidGoodbye_ = false;
     std::string closeReason_;
     std::uint64_t closeByUs_ = 0;   // the socket goes then, whatever the far side does
     std::size_t dropped_ = 0;       // bytes that came after close()
@@ -95,6 +96,7 @@ class WebSocketServer {
     void drop(Connection& connection, std::size_t bytes);
     bool receive(Connection& connection, std::string_view piece, bool binary, bool first, bool final, std::size_t remaining);
     int write(Connection& connection);
+    int sayGoodbye(Connection& connection);
 
     ServerOptions options_;
     Endpoint& endpoint_;

@@ -36,6 +36,13 @@ bool anything(const connection::Frame&) {
     return true;
 }
 
+TEST(Address, LosesTheServerThatWasNamedAndNothingElse) {
+    const auto without = [](const char* url) { return connection::anyServer(*connection::parseAddress(url)).text(); };
+    EXPECT_EQ(without("http://a:1/ws?srv=b"), "ws://a:1/ws");
+    EXPECT_EQ(without("http://a:1/ws?x=1&srv=b&y=2"), "ws://a:1/ws?x=1&y=2");
+    EXPECT_EQ(without("https://a:1"), "wss://a:1/ws");
+}
+
 TEST(Address, TakesWhatPeopleWrite) {
     const auto text = [](const char* url) {
         const auto address = connection::parseAddress(url);
