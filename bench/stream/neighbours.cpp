@@ -114,7 +114,9 @@ void watchHealthy(int port, double seconds, Seen& seen) {
     for (std::size_t i = 0; i < kHealthy; ++i) {
         threads.emplace_back([&, i] {
             try {
-                const Watched watched = watchStream(port, plainDocument(false), {.inputsPerS = kInputsPerS, .untilUs = until});
+                // Each at a time of its own: alone, none waits for another's frame, whoever connected first.
+                const auto phaseUs = static_cast<std::uint64_t>(1e6 / kInputsPerS * static_cast<double>(i) / kHealthy);
+                const Watched watched = watchStream(port, plainDocument(false), {.inputsPerS = kInputsPerS, .untilUs = until, .phaseUs = phaseUs});
                 if (!watched.ended.empty()) failed[i] = "a healthy viewer was " + watched.ended;
                 const std::vector<double> ages = agesMs(watched.frames, from);
                 seen.agesMs[i].insert(seen.agesMs[i].end(), ages.begin(), ages.end());

@@ -28,7 +28,8 @@ Watched watch(e2e::RawClient& client, const WatchOptions& options) {
     };
     const auto periodUs = static_cast<std::uint64_t>(1e6 / options.inputsPerS);
     Watched watched{.lastInput = options.firstSeq - 1};
-    for (std::uint64_t now = nowUs(), due = now; now < options.untilUs && !(options.stop && *options.stop); now = nowUs()) {
+    const std::uint64_t firstUs = nowUs() + periodUs - (nowUs() + periodUs - options.phaseUs % periodUs) % periodUs;
+    for (std::uint64_t now = nowUs(), due = firstUs; now < options.untilUs && !(options.stop && *options.stop); now = nowUs()) {
         if (now >= due) {
             Json input = pose(++watched.lastInput);
             input.update({{"op", "input"}, {"seq", watched.lastInput}, {"t_us", now}});

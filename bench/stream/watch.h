@@ -22,6 +22,7 @@ struct Arrival {
 struct WatchOptions {
     double inputsPerS = 60;
     std::uint64_t untilUs = 0;                    // our clock
+    std::uint64_t phaseUs = 0;                    // of the inputs within their period, which begins at 0 of our clock
     const std::atomic<bool>* stop = nullptr;      // ends it early
     std::uint32_t firstSeq = 1;                   // of the inputs: one connection can be watched twice
     // What input number `seq` changes; by default it moves the camera a little, each time to another place.
