@@ -6,8 +6,8 @@ import { createInterface } from 'node:readline';
 const kReadyMs = 60_000;
 
 // Resolves once frames can be asked for. port 0: any free one. Returns {url, port, stop()}.
-export async function startServer(program, port = 0) {
-    const child = spawn(program, ['--port', String(port), '--gpu', 'software', '--log-level', 'warning'], { stdio: ['ignore', 'pipe', 'pipe'] });
+export async function startServer(program, port = 0, options = []) {
+    const child = spawn(program, ['--port', String(port), '--gpu', 'software', '--log-level', 'warning', ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     process.once('exit', () => child.kill('SIGKILL'));    // however the test ends, no server stays behind
     let log = '';
     child.stderr.on('data', (text) => (log = (log + text).slice(-4000)));
