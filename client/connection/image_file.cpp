@@ -67,19 +67,12 @@ Written writeNpy(const std::filesystem::path& file, const Image& image) {
     head += '\n';
     const std::vector<float> values = toFloats(image);
 
-    std::vector<std::uint8_t> bytes = {0x93,
-                                       'N',
-                                       'U',
-                                       'M',
-                                       'P',
-                                       'Y',
-                                       1,
-                                       0,
-                                       static_cast<std::uint8_t>(head.size() & 0xff),
-                                       static_cast<std::uint8_t>(head.size() >> 8)};
-    bytes.insert(bytes.end(), head.begin(), head.end());
-    const auto* raw = reinterpret_cast<const std::uint8_t*>(values.data());
-    bytes.insert(bytes.end(), raw, raw + 4 * values.size());
+    std::vector<std::uint8_t> bytes(10 + head.size() + 4 * values.size());
+    std::memcpy(bytes.data(), "\x93NUMPY\x01\x00", 8);
+    bytes[8] = static_cast<std::uint8_t>(head.size() & 0xff);
+    bytes[9] = static_cast<std::uint8_t>(head.size() >> 8);
+    std::memcpy(bytes.data() + 10, head.data(), head.size());
+    std::memcpy(bytes.data() + 10 + head.size(), values.data(), 4 * values.size());
     return writeBytes(file, bytes);
 }
 
