@@ -153,12 +153,16 @@ void Viewer::on(const protocol::FrameRequest& request) {
 }
 
 void Viewer::on(const protocol::Ack& ack) {
+    const std::uint32_t onTheWay = outbox_.unacknowledged();
     if (!outbox_.acknowledge(ack, session::nowUs())) {
         refuse(problem(ErrorCode::OutOfRange, "no frame of this number was sent", "seq"));
         return;
     }
-    if (outbox_.ageMs() > 0.0) {
-        desk_.counters.frameAge.Observe(outbox_.ageMs() * 1e-3);
+    if (outbox_.unacknowledged() < onTheWay) {
+        texts_.giveBack();
+        if (outbox_.ageMs() > 0.0) {
+            desk_.counters.frameAge.Observe(outbox_.ageMs() * 1e-3);
+        }
     }
     updateOccupied();
     connection_.requestWrite();

@@ -2,6 +2,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <cmath>
 #include <string>
 #include <thread>
@@ -94,7 +95,10 @@ class Visitor {
             shown = frame->header.inputSeq;
             ++counts_.frames;
         }
-        counts_.lost += !watched.ended.empty();
+        if (!watched.ended.empty()) {
+            ++counts_.lost;
+            std::fprintf(stderr, "soak: a viewer was %s\n", watched.ended.c_str());
+        }
         counts_.unshown += watched.ended.empty() && shown < watched.lastInput;
     }
 
@@ -139,7 +143,7 @@ struct Resources {
 // Once everyone has left: what the server holds by itself. Nothing of one that has ended.
 Resources atRest(const ServerChild& server) {
     if (!server.alive()) return {};
-    for (int i = 0; i < 100 && server.metric("caustream_connections").value_or(0) > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (int i = 0; i < 100 && server.metric("caustream_sessions").value_or(0) > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     std::this_thread::sleep_for(std::chrono::milliseconds(1000));
     return {server.residentMib(), static_cast<double>(server.descriptors()), server.metric("caustream_gl_objects").value_or(0)};
 }
@@ -152,8 +156,9 @@ void play(int port, std::uint64_t untilUs, std::uint32_t seed, Counts& counts) {
             while (nowUs() < untilUs) {
                 try {
                     visitor.visit(untilUs);
-                } catch (const std::exception&) {
+                } catch (const std::exception& problem) {
                     ++counts.lost;
+                    std::fprintf(stderr, "soak: a viewer was lost: %s\n", problem.what());
                     std::this_thread::sleep_for(std::chrono::milliseconds(200));
                 }
             }

@@ -22,6 +22,9 @@ class TokenBucket {
         return true;
     }
 
+    // One event was no more than the answer to what we sent: it does not count.
+    void giveBack() { tokens_ = std::min(perS_, tokens_ + 1.0); }
+
    private:
     double perS_, tokens_;
     std::uint64_t lastUs_ = 0;

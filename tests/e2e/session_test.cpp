@@ -181,6 +181,20 @@ TEST(SessionLimits, AViewerGetsNoMoreMemoryThanItsShare) {
     EXPECT_EQ(viewer.update({{"stream", {{"width", 64}}}})["op"], "ok") << "nothing else was changed";
 }
 
+TEST(SessionLimits, AFastStreamsAcknowledgementsAreNoFlood) {
+    ServerProcess server({"--test-frame-bytes", "100"});
+    RawClient viewer(server.port());
+    viewer.hello({{"max_inflight", 4}});
+    viewer.update({{"stream", {{"width", 96}, {"height", 64}, {"max_fps", 240}}}});
+    viewer.ask({{"op", "stream.start"}});
+    for (int i = 0; i < 800; ++i) {  // more than 300 messages a second, but for those that only answer
+        viewer.json({{"op", "input"}, {"seq", i + 1}, {"t_us", i}, {"camera", {{"eye", {0.001 * i, 1.0, 3.0}}}}});
+        const auto picture = viewer.frame();
+        ASSERT_TRUE(picture) << i;
+        viewer.ack(picture->header.frameSeq);
+    }
+}
+
 TEST(SessionLimits, TheLadderFollowsAViewerThatIsSlowAndOneThatIsNot) {
     ServerProcess server({"--test-frame-bytes", "20000"});
     RawClient viewer(server.port());
