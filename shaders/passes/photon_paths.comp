@@ -90,11 +90,27 @@ void deposit(vec2 uv, bool outer, float flux) {
 }
 
 #if EXACT_RECEIVERS
+// How far a point of a plane lies behind what a texel shows of it at its centre: 0 on the plane that is seen there, however
+// slanted. `normal` is that of the plane.
+float behindCentre(View view, sampler2D layer, vec3 pos, vec3 normal, vec2 uv) {
+    ivec2 size = textureSize(layer, 0);
+    ivec2 texel = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
+    vec2 xy = (2.0 * (vec2(texel) + 0.5) / vec2(size) - 1.0) * view.halfExtent;
+    vec3 centre;
+    if (isPerspective(view)) {
+        vec3 towards = vec3(xy, -1.0);
+        centre = towards * (dot(normal, pos) / dot(normal, towards));
+    } else {
+        centre = vec3(xy, pos.z - dot(normal.xy, xy - pos.xy) / normal.z);
+    }
+    return behindLayer(view, centre, texelFetch(layer, texel, 0).x);
+}
+
 // Light on a receiver that the light itself does not see belongs to no texel of its map. Where nothing hides anything
-// (HIDDEN 0) the place alone tells.
-bool seen(View view, sampler2D layer, vec3 pos, out vec2 uv) {
+// (HIDDEN 0) the place alone tells. `normal` is the receiver's there, in the view's space.
+bool seen(View view, sampler2D layer, vec3 pos, vec3 normal, out vec2 uv) {
 #if HIDDEN
-    bool shown = abs(behindAt(view, layer, pos, uv)) <= kResidual;
+    bool shown = abs(behindAt(view, layer, pos, uv)) <= kResidual || abs(behindCentre(view, layer, pos, normal, uv)) <= kResidual;
 #else
     const bool shown = true;
     uv = viewToUv(view, pos);
@@ -117,11 +133,12 @@ bool land(vec3 origin, vec3 direction, float flux, float most) {
     if (dot(ground.geometric, direction) > 0.0) against = -against;
     bool away = dot(against, u_mapView.perspective ? -pos : vec3(0.0, 0.0, 1.0)) <= 0.0;
 #else
+    const vec3 against = vec3(0.0);
     const bool away = false;
 #endif
     if (away || (u_mapView.perspective && pos.z >= 0.0)) g_tally.left += flux;
-    else if (seen(u_mapView, u_receivers, pos, uv)) deposit(uv, false, flux);
-    else if (seen(u_outerView, u_outerReceivers, pos, uv)) deposit(uv, true, flux);
+    else if (seen(u_mapView, u_receivers, pos, against, uv)) deposit(uv, false, flux);
+    else if (seen(u_outerView, u_outerReceivers, pos, against, uv)) deposit(uv, true, flux);
     else g_tally.left += flux;
     return true;
 }

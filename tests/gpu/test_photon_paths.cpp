@@ -42,7 +42,8 @@ class PhotonPathsTest : public CameraPass {
         const scene::Object& caster = scene.geometry->objects[surfaces.casters()[0].object];
         const render::View emission = render::emissionView(scene, light, caster).value(), cone = render::shadowView(scene, light);
         gl::Texture receivers;
-        render::ReceiverDepth(shaders_).run({gpu, scene.materials, cone, kMapSize}, receivers);
+        const auto mirror = [&](const scene::Object& object) { return scene.materials[static_cast<std::size_t>(object.material)].mirror; };
+        render::ReceiverDepth(shaders_).run({gpu, scene.materials, cone, kMapSize, false, 1.0, mirror}, receivers);
         const optics::WavelengthSet set = optics::continuousSpectrum(4);
         render::SpectralTable table;
         const render::SpectralEntries entries = render::spectralEntries(set);
@@ -127,6 +128,21 @@ TEST_F(PhotonPathsTest, LightOnTheBackOfABoardIsNotOnItsFront) {
     ASSERT_GT(onCasters, 0.0);
     EXPECT_EQ(luminance(traced.map), 0.0);
     EXPECT_NEAR(traced.ledger[layout::kLedgerLeftMap] / onCasters, 1.0, 0.05);   // what the mirror keeps is absorbed
+}
+
+// A standing mirror throws light back at a floor that the light itself sees at a few degrees: a texel's floor is then far
+// nearer at one of its sides than at the other, and yet the same floor.
+TEST_F(PhotonPathsTest, LightOnASlantedFloorIsInTheMap) {
+    SyntheticScene parts;
+    scene::Material mirror = stability::white();
+    mirror.mirror = true;
+    parts.addQuad(parts.material(mirror), {0.5f, 0, -0.3f}, {0, 0, 0.6f}, {0, 0.2f, 0});
+    parts.addQuad(parts.material(stability::white()), {-1.5f, 0, 2}, {4, 0, 0}, {0, 0, -4});
+    const Traced traced = trace(stability::finish(parts, stability::spotAbove({-2, 0.6f, 0}, {0.5f, 0.1f, 0}, 40.0f)), {kPhotons});
+    const double onCasters = traced.ledger[layout::kLedgerOnCasters];
+    ASSERT_GT(onCasters, 0.0);
+    EXPECT_NEAR(traced.ledger[layout::kLedgerLeftMap] / onCasters, 0.0, 1e-4);
+    EXPECT_GT(luminance(traced.map) / (1 << 20) / onCasters, 0.9);
 }
 
 }  // namespace
