@@ -19,6 +19,8 @@ constexpr int kSpectraSoftware = 4, kSpectraHardware = 8;   // of a continuous s
 constexpr int kFirstSoftware = 128, kFirstHardware = 1024;  // photons a side of a light pose's first frame
 constexpr double kStillTimes = 16.0;           // as many photons for a still, where planes make them cheap
 constexpr std::uint64_t kMostAtOnce = 1u << 18;             // photons of a dispatch: drivers watch how long one takes
+// Of a dispatch: the least that GL 4.5 lets a driver take, 65,535 groups. Beyond, nothing at all would be traced.
+constexpr std::uint64_t kMostThreads = 65535ull * layout::kGroupSize;
 constexpr double kAddMs = 35.0;                // of a frame that adds photons, for the photons alone: ten frames a second remain
 constexpr double kMilestone = 1.25;            // times as many photons until it is next asked whether that is enough
 constexpr double kTarget = 0.01;               // relative L1, unless asked for
@@ -165,18 +167,20 @@ void TracedLightSide::trace(const Inputs& all, std::uint64_t photons, int firstE
     // A row may hold all the flux of this frame's photons; rounding each to a whole unit is kept far below them.
     ledgerPerFlux_ = kFixedRange / static_cast<double>(photons);
     startedNs_ = nowNs();
+    const int spectra = bands ? entries : sums.spectra;
+    const std::uint64_t atOnce = std::min(kMostAtOnce, kMostThreads / static_cast<std::uint64_t>(spectra));
     timer.stage("photon_paths", [&] {
         for (const ExactEmitter& emitter : sums.emitters) {
             const double share = emitter.extent / sums.extent;
             const auto upTo = [&](std::uint64_t all_) { return static_cast<std::uint64_t>(share * static_cast<double>(all_)); };
             const std::uint64_t end = upTo(sums.photons + photons);
-            for (std::uint64_t first = upTo(sums.photons); first < end; first += kMostAtOnce) {
+            for (std::uint64_t first = upTo(sums.photons); first < end; first += atOnce) {
                 photonPaths_.run({.surfaces = all.surfaces, .table = sums.table, .emission = emitter.emission, .mapView = out.mapView,
                                   .outerView = out.outerView, .receivers = sums.receivers, .outerReceivers = sums.outerReceivers,
                                   .light = in.light, .cookie = cookie, .emitter = emitter.caster,
                                   .firstPhoton = static_cast<std::uint32_t>(first),
-                                  .photons = static_cast<std::uint32_t>(std::min(kMostAtOnce, end - first)),
-                                  .spectra = bands ? entries : sums.spectra, .firstEntry = firstEntry, .entries = entries,
+                                  .photons = static_cast<std::uint32_t>(std::min(atOnce, end - first)),
+                                  .spectra = spectra, .firstEntry = firstEntry, .entries = entries,
                                   .continuous = sums.entries.continuous,
                                   .bandShare = bands ? 1.0 / static_cast<double>(sums.entries.nm.size()) : 0.0,
                                   .exactReceivers = in.plan.exactReceivers, .hidden = in.plan.hidden,

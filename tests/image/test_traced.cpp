@@ -48,6 +48,19 @@ TEST_F(TracedTest, FramesAtRestAddPhotonsUntilTheErrorIsWhatWasAskedFor) {
     EXPECT_EQ(pipeline->run(request).stats.convergence->photons, photons);
 }
 
+// More threads than one dispatch may have: the same light reaches the gem, however many photons and wavelengths it is in.
+TEST_F(TracedTest, NoLightIsLostToTheLimitsOfADispatch) {
+    render::Request request = requestOf("gem");
+    request.target = render::Target::Spectral;
+    request.sample = render::Sample::F32;
+    request.transport.bounces = 0;
+    request.transport.wavelengths = 4;
+    const double few = freshPipeline()->run(request).stats.ledger.onCasters;
+    request.transport.wavelengths = 16;
+    request.transport.photonGrid = 512;
+    EXPECT_NEAR(freshPipeline()->run(request).stats.ledger.onCasters / few, 1.0, 1e-2);
+}
+
 TEST_F(TracedTest, AutoTracesPlanesAlwaysAndMeshesAtRest) {
     const auto pipeline = freshPipeline();
     EXPECT_TRUE(runs(pipeline->run(requestOf("prism")), "photon_paths"));
