@@ -22,6 +22,21 @@ std::vector<float> joined(const std::vector<float>& cells, int side, int k) {
     return sums;
 }
 
+// Where the light went, in shares of what reached casters: of two tracers that agree, all but the noise is the same. Landed
+// is all that met a receiver: of the reference also where no map shows it, of the map's tracer also what left its views.
+void sayLedgers(const std::string& scene, const render::EnergyLedger& own, const tracer::Result& reference) {
+    const tracer::Ledger& theirs = reference.continuous;
+    const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+    std::fprintf(stderr, "%s: on casters %.5e (tracer %.5e); of it deposited %.4f, left the map %.4f, no receiver %.4f, absorbed %.4f, reflected first %.4f, "
+                 "rejected %.4f, cut %.4f\n", scene.c_str(), own.onCasters, theirs.onCasters, share(own.deposited, own.onCasters), share(own.leftMap, own.onCasters),
+                 share(own.noReceiver, own.onCasters), share(own.absorbed, own.onCasters), share(own.reflected, own.onCasters), share(own.rejected, own.onCasters),
+                 share(own.cut, own.onCasters));
+    std::fprintf(stderr, "%s: the tracer: landed %.4f (hidden %.4f), escaped %.4f, absorbed %.4f (by mirrors %.4f), reflected first %.4f, below threshold %.4f, "
+                 "too many interfaces %.4f\n", scene.c_str(), share(theirs.landed, theirs.onCasters), reference.hidden.empty() ? 0.0 : share(reference.hidden.front(), theirs.onCasters),
+                 share(theirs.escaped, theirs.onCasters), share(theirs.absorbed + theirs.mirrors, theirs.onCasters), share(theirs.mirrors, theirs.onCasters),
+                 share(theirs.firstReflected, theirs.onCasters), share(theirs.belowThreshold, theirs.onCasters), share(theirs.interfaceLimit, theirs.onCasters));
+}
+
 }  // namespace
 
 SceneReport reportScene(Renderer& renderer, const std::string& scene, const ReportSettings& settings) {
@@ -70,6 +85,7 @@ SceneReport reportScene(Renderer& renderer, const std::string& scene, const Repo
     report.truth = d.relativeL1, report.flux = d.fluxRatio;
     report.truthNoise = image.relativeL1[1] / k;   // of independent cells
     renderer.forget();
+    sayLedgers(scene, rest.ledger, traced);
     std::fprintf(stderr, "%s: %.4f against the tracer, whose noise is %.4f; error %.4f, estimated %.4f after %.1f s\n", scene.c_str(), report.truth, report.truthNoise,
                  report.errorAtEnd, report.estimateAtEnd, report.secondsToEnd);
     return report;
