@@ -30,7 +30,7 @@ void endExchange(HttpExchange* exchange) {
     }
 }
 
-int respond(lws* socket, HttpExchange* exchange, HttpResponse response) {
+Step respond(lws* socket, HttpExchange* exchange, HttpResponse response) {
     unsigned char buffer[LWS_PRE + 4096];
     unsigned char *start = buffer + LWS_PRE, *at = start, *end = buffer + sizeof buffer;
     const bool good =
@@ -43,26 +43,26 @@ int respond(lws* socket, HttpExchange* exchange, HttpResponse response) {
         addHeader(socket, "referrer-policy:", "no-referrer", &at, end) &&
         lws_finalize_write_http_header(socket, start, &at, end) == 0;
     if (!good) {
-        return -1;
+        return {-1, false};
     }
     if (response.body.empty()) {
-        return lws_http_transaction_completed(socket) ? -1 : 0;
+        return {lws_http_transaction_completed(socket) ? -1 : 0, true};
     }
     endExchange(exchange);
     exchange->body = new std::string(std::string(LWS_PRE, '\0') + response.body);
     lws_callback_on_writable(socket);
-    return 0;
+    return {0, false};
 }
 
-int writeBody(lws* socket, HttpExchange* exchange) {
+Step writeBody(lws* socket, HttpExchange* exchange) {
     if (!exchange->body) {
-        return 0;
+        return {0, false};
     }
     const int size = static_cast<int>(exchange->body->size() - LWS_PRE);
     const int sent = lws_write(socket, reinterpret_cast<unsigned char*>(exchange->body->data()) + LWS_PRE,
                                static_cast<std::size_t>(size), LWS_WRITE_HTTP_FINAL);
     endExchange(exchange);
-    return sent < size || lws_http_transaction_completed(socket) ? -1 : 0;
+    return {sent < size || lws_http_transaction_completed(socket) ? -1 : 0, true};
 }
 
 }  // namespace caustream::net

@@ -15,9 +15,12 @@ struct HttpExchange {   // lies in libwebsockets' memory, zeroed
 // A request header's value, empty when absent. Always a copy: libwebsockets keeps long ones in pieces.
 std::string requestHeader(lws* socket, lws_token_indexes token);
 
-// What these two return is the callback's return value.
-int respond(lws* socket, HttpExchange* exchange, HttpResponse response);
-int writeBody(lws* socket, HttpExchange* exchange);
+struct Step {
+    int result;     // the callback's return value
+    bool answered;  // the answer is out, and libwebsockets has taken the exchange's memory back: another request may follow
+};
+Step respond(lws* socket, HttpExchange* exchange, HttpResponse response);
+Step writeBody(lws* socket, HttpExchange* exchange);
 
 void endExchange(HttpExchange* exchange);
 

@@ -83,12 +83,11 @@ struct WebSocketServer::Callbacks {
         }
     }
 
-    // After a step of an exchange that gave `result`: when it was the last, another request may follow.
-    static int going(lws* socket, const HttpExchange* exchange, int result) {
-        if (result == 0 && !exchange->body) {
+    static int going(lws* socket, const Step& step) {
+        if (step.result == 0 && step.answered) {
             server(socket).sockets_.answered(socket, session::nowUs());
         }
-        return result;
+        return step.result;
     }
 
     static int http(lws* socket, lws_callback_reasons reason, void* user, void* in, std::size_t length) {
@@ -112,10 +111,10 @@ struct WebSocketServer::Callbacks {
                     }
                     const HttpRequest request{std::string(static_cast<const char*>(in)),
                                               requestHeader(socket, WSI_TOKEN_HTTP_IF_NONE_MATCH)};
-                    return going(socket, exchange, respond(socket, exchange, server(socket).endpoint_.http(request)));
+                    return going(socket, respond(socket, exchange, server(socket).endpoint_.http(request)));
                 });
             case LWS_CALLBACK_HTTP_WRITEABLE:
-                return guarded([&] { return going(socket, exchange, writeBody(socket, exchange)); });
+                return guarded([&] { return going(socket, writeBody(socket, exchange)); });
             case LWS_CALLBACK_CLOSED_HTTP:
             case LWS_CALLBACK_HTTP_DROP_PROTOCOL: endExchange(exchange); return 0;
             default: return lws_callback_http_dummy(socket, reason, user, in, length);
