@@ -3,8 +3,8 @@
 
 // `t` starts as a guess and ends at the exit; `normal` is the outward unit normal there. False when it does not settle
 // within `tolerance` (length).
-bool findExit(View view, sampler2D back, vec3 origin, vec3 direction, int steps, float tolerance, inout float t,
-              out vec3 normal) {
+bool findExit(View view, sampler2D back, vec3 origin, vec3 direction, int steps, float tolerance, float deeper,
+              inout float t, out vec3 normal) {
     float last = 0.0;             // the last distance that had a surface under it
     float change = 1e30;
     normal = vec3(0.0);
@@ -16,15 +16,15 @@ bool findExit(View view, sampler2D back, vec3 origin, vec3 direction, int steps,
             continue;
         }
         float towards = dot(direction, layer.xyz);
-        if (towards < 1e-4) {       // the surface under the guess faces the ray: try nearer the entry
-            t = 0.5 * (t + last);
+        if (towards < 1e-4) {       // the surface under the guess faces the ray: deeper where it is not out yet, else nearer
+            t = layerOf(view, origin + t * direction) > layer.w ? (t < deeper ? deeper : 2.0 * t) : 0.5 * (t + last);
             continue;
         }
         float met = dot(layerToView(view, uv, layer.w) - origin, layer.xyz) / towards;
         normal = layer.xyz;
         change = abs(met - t);
         last = t;
-        t = max(met, 0.0);
+        t = clamp(met, 0.0, 2.0 * max(t, deeper));
     }
 #if RESIDUALS
     countResidual(steps > 1 ? kResidualExit : kResidualExitFollowed, change / tolerance);
