@@ -109,7 +109,8 @@ class Visitor {
             if (!frame) continue;
             client.ack(frame->header.frameSeq);
             ++counts_.frames;
-            if (client.lastReply.value("id", 0u) == 500'000 + seq_ && client.lastReply.at("frame_seq") == frame->header.frameSeq) return;
+            // A frame of the stream may come before any answer has.
+            if (client.lastReply.is_object() && client.lastReply.value("id", 0u) == 500'000 + seq_ && client.lastReply.at("frame_seq") == frame->header.frameSeq) return;
         }
         ++counts_.unshown;
     }
