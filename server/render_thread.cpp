@@ -207,7 +207,11 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
     std::string error;
     bool outOfMemory = false;
     render::Frame frame;
-    const auto still = stills_.find(job.session);
+    auto still = stills_.find(job.session);
+    if (still != stills_.end() && !job.requestId && still->second.view != job.shown.view) {
+        stills_.erase(still);  // of a picture that is no more
+        still = stills_.end();
+    }
     if (testFrames_.wanted()) {
         stream::Encoded encoded;
         frame = testFrames_.draw(job, encoded);
@@ -219,7 +223,7 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
         deliver_({std::move(job), std::move(outgoing), {}});
         return;
     }
-    if (job.lossless && still != stills_.end() && still->second.view == job.shown.view) {
+    if (job.lossless && still != stills_.end()) {
         frame = std::move(still->second.frame);
         stills_.erase(still);
     } else {
@@ -244,7 +248,7 @@ void RenderThread::draw(Gpu& gpu, FrameJob job) {
         deliver_({std::move(job), {}, std::move(error)});
         return;
     }
-    if (job.still && !job.lossless && !job.converge && !job.requestId && job.shown.view->adaptive) {
+    if (job.still && !job.lossless && !job.converge && !job.requestId && job.shown.view->losslessFollows()) {
         stills_.insert_or_assign(job.session, Still{job.shown.view, frame});
     }
     const stream::EncodeSettings settings = encodingOf(job, frame.stats.convergence);

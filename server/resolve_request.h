@@ -16,6 +16,9 @@ struct View {
     stream::EncodeSettings encodeLast;  // of a picture that has converged: JPEG's losses would outlast the wait for it
     protocol::StreamState stream;
     bool adaptive = false;              // moving frames follow the quality ladder
+
+    // The still of a picture at rest comes once more, without loss.
+    bool losslessFollows() const { return adaptive && encodeLast.encoding != encode.encoding; }
 };
 
 // `scene` already has the document's lights and materials; a client that reads PNG gets its last picture as one. Errors: a pass there is not, an encoding or samples

@@ -16,7 +16,7 @@ bool wantsStill(const Shown& shown) { return shown.view && shown.view->request.t
 
 // Whoever waits gets the picture without JPEG's losses, where its program reads such.
 bool wantsLossless(const Shown& shown) {
-    return wantsStill(shown) && shown.view->adaptive && shown.view->encodeLast.encoding != shown.view->encode.encoding;
+    return wantsStill(shown) && shown.view->losslessFollows();
 }
 
 // Between two frames at the most that are wanted a second.

@@ -11,12 +11,11 @@
 namespace caustream {
 namespace {
 
-constexpr std::uint64_t kUsPerS = 1'000'000;
 constexpr int kEndS = 2;                              // for the viewers to take their leave where nobody drained before
-constexpr std::uint64_t kNoticeUs = kUsPerS;          // for a load balancer's check to see that this server drains
+constexpr std::uint64_t kNoticeUs = session::kUsPerS;          // for a load balancer's check to see that this server drains
 constexpr std::uint64_t kRoundUs = 250'000;           // between the network thread's rounds
-constexpr std::uint64_t kFarTooLateUs = 5 * kUsPerS;  // a round that late: connections time out meanwhile,
-constexpr std::uint64_t kLagShownUs = 10 * kUsPerS;   // and this long health says so
+constexpr std::uint64_t kFarTooLateUs = 5 * session::kUsPerS;  // a round that late: connections time out meanwhile,
+constexpr std::uint64_t kLagShownUs = 10 * session::kUsPerS;   // and this long health says so
 
 net::ServerOptions serverOptions(const Config& config, const protocol::Limits& limits) {
     return {.bind = config.bind,
@@ -65,7 +64,7 @@ Service::Service(const Config& config)
     desk_.findSession = [this](std::string_view id) -> Viewer* {
         for (const auto& [key, viewer] : viewers_) {
             const session::Session* session = viewer->session();
-            if (session && (session->id() == id || session::viewIdOf(session->id()) == id)) {
+            if (session && session->isNamed(id)) {
                 return viewer.get();
             }
         }
@@ -154,7 +153,7 @@ void Service::tick() {
     }
     if (now > endUs_ || viewers_.empty()) {
         server_.stop();
-    } else if (now + kEndS * kUsPerS > endUs_) {
+    } else if (now + kEndS * session::kUsPerS > endUs_) {
         for (const auto& [key, viewer] : viewers_) {
             viewer->leave();
         }
@@ -181,7 +180,7 @@ void Service::drain(protocol::Goaway::Reason reason, int seconds) {
 
 void Service::startDraining(protocol::Goaway::Reason reason, int seconds) {
     desk_.draining = true;
-    endUs_ = session::nowUs() + static_cast<std::uint64_t>(seconds) * kUsPerS;
+    endUs_ = session::nowUs() + static_cast<std::uint64_t>(seconds) * session::kUsPerS;
     log::info("draining").with("viewers", viewers_.size()).with("seconds", seconds);
     if (viewers_.empty()) {
         server_.stop();
@@ -200,7 +199,7 @@ void Service::sayFarewell(protocol::Goaway::Reason reason) {
 }
 
 std::optional<std::string> Service::failure() const {
-    const std::uint64_t now = session::nowUs(), most = static_cast<std::uint64_t>(config_.watchdogS) * kUsPerS;
+    const std::uint64_t now = session::nowUs(), most = static_cast<std::uint64_t>(config_.watchdogS) * session::kUsPerS;
     const auto tooLong = [&](std::uint64_t sinceUs) { return now > sinceUs && now - sinceUs > most; };
     if (const char* lost = renderer_->lost()) {
         return lost;

@@ -19,17 +19,12 @@ using protocol::CloseCode;
 using protocol::DecodeError;
 using protocol::ErrorCode;
 
-constexpr std::uint64_t kUsPerS = 1'000'000;
-constexpr std::uint64_t kStatsEveryUs = kUsPerS, kConvergingStatsEveryUs = kUsPerS / 5;
+constexpr std::uint64_t kStatsEveryUs = session::kUsPerS, kConvergingStatsEveryUs = session::kUsPerS / 5;
 constexpr std::uint32_t kRetryMs = 2000;
 constexpr std::uint32_t kReconnectMs = 50, kJitterMs = 450; // so that the next server is not met by all at once
 constexpr double kChunksPerS = 2000;                        // credit bounds the bytes, this the smallest of chunks
 constexpr std::size_t kMaxDeferredBytes = 4u << 20;         // while a scene loads
 constexpr std::size_t kMaxWaitingTextBytes = 16u << 20;     // for a client that talks and does not read
-
-DecodeError problem(ErrorCode code, std::string message, std::string field = {}, std::optional<std::uint32_t> id = {}) {
-    return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
-}
 
 }  // namespace
 
@@ -85,12 +80,12 @@ void Viewer::handle(std::string_view message, bool binary) {
 // A stream that no one has spoken to for long rests, until someone does; a connection that stays silent ends.
 void Viewer::rest(std::uint64_t nowUs) {
     const std::uint64_t silentUs = nowUs - heardUs_;
-    if (const bool idle = silentUs > desk_.limits.idlePauseS * kUsPerS; ready_ && idle != idle_) {
+    if (const bool idle = silentUs > desk_.limits.idlePauseS * session::kUsPerS; ready_ && idle != idle_) {
         idle_ = idle;
         send(protocol::Status{protocol::Status::Level::Info, "idle", idle ? "nothing was said for long: the stream rests until something is" : ""});
         desk_.renderer->schedule([&](Scheduler& scheduler) { scheduler.setStreaming(connection_.id(), streaming_ && !idle); });
     }
-    if (silentUs > desk_.limits.idleCloseS * kUsPerS) {
+    if (silentUs > desk_.limits.idleCloseS * session::kUsPerS) {
         fail(problem(ErrorCode::Timeout, "nothing was said for " + std::to_string(desk_.limits.idleCloseS) + " s"));
     }
 }
@@ -226,12 +221,12 @@ void Viewer::tick(std::uint64_t nowUs) {
     if (connection_.closing()) {
         return;
     }
-    if (!session_ && nowUs - openedUs_ > desk_.limits.helloS * kUsPerS) {
+    if (!session_ && nowUs - openedUs_ > desk_.limits.helloS * session::kUsPerS) {
         fail(problem(ErrorCode::Timeout, "no hello in " + std::to_string(desk_.limits.helloS) + " s"));
         return;
     }
     const auto waitingSince = outbox_.waitingSinceUs();
-    if (waitingSince && nowUs - *waitingSince > desk_.limits.deadS * kUsPerS) {
+    if (waitingSince && nowUs - *waitingSince > desk_.limits.deadS * session::kUsPerS) {
         fail(problem(ErrorCode::Timeout, "no acknowledgement in " + std::to_string(desk_.limits.deadS) + " s"));
         return;
     }

@@ -30,6 +30,12 @@ namespace caustream {
 
 class Viewer;
 
+// What is wrong with a message, for refuse() and fail().
+inline protocol::DecodeError problem(protocol::ErrorCode code, std::string message, std::string field = {},
+                                     std::optional<std::uint32_t> id = {}) {
+    return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
+}
+
 // What all viewers share; the service owns it and all it points to.
 struct Desk {
     const Config& config;

@@ -17,10 +17,6 @@ using protocol::SceneRef;
 // Of one viewer, each in memory whole.
 constexpr std::size_t kMostReading = 2;
 
-DecodeError problem(ErrorCode code, std::string message, std::string field, std::optional<std::uint32_t> id = {}) {
-    return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
-}
-
 std::string nameOf(const std::string& sha256) { return "file " + sha256.substr(0, 8); }
 
 const scene::LoadError kEnded{.message = "its reading was ended", .cancelled = true};

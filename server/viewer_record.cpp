@@ -21,7 +21,7 @@ void Viewer::on(const protocol::Record& record) {
     if (!record.on) {
         recorder_.reset();
     } else if (!recorder_) {
-        auto started = session::Recorder::start(desk_.config.recordDir, session::viewIdOf(session_->id()),
+        auto started = session::Recorder::start(desk_.config.recordDir, session_->viewId(),
                                                 {{"build", CAUSTREAM_VERSION},
                                                  {"gpu", desk_.renderer->gpuName()},
                                                  {"rev", session_->rev()},

@@ -15,10 +15,6 @@ using protocol::DecodeError;
 using protocol::ErrorCode;
 using protocol::SceneRef;
 
-DecodeError problem(ErrorCode code, std::string message, std::string field, std::optional<std::uint32_t> id = {}) {
-    return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
-}
-
 bool isBuiltin(const std::string& name) {
     for (const scene::BuiltinScene& builtin : scene::builtinScenes()) {
         if (builtin.name == name) {

@@ -22,11 +22,6 @@ using protocol::DecodeError;
 using protocol::ErrorCode;
 using protocol::Json;
 
-constexpr std::uint64_t kUsPerS = 1'000'000;
-
-DecodeError problem(ErrorCode code, std::string message, std::string field = {}, std::optional<std::uint32_t> id = {}) {
-    return {.code = code, .message = std::move(message), .field = std::move(field), .id = id};
-}
 
 // Takes as long for a wrong token as for a right one.
 bool sameToken(const std::string& a, const std::string& b) {
@@ -143,7 +138,7 @@ void Viewer::on(const protocol::Hello& hello) {
     readsPng_ = std::ranges::find(hello.caps, "png") != hello.caps.end();
     const auto withdraw = [this, helloId = hello.id, id, kept](DecodeError error) {
         if (kept) {
-            desk_.kept.keep(id, *kept, session::nowUs() + desk_.limits.resumeS * kUsPerS);
+            desk_.kept.keep(id, *kept, session::nowUs() + desk_.limits.resumeS * session::kUsPerS);
         }
         session_.reset();
         --desk_.sessions;
@@ -178,7 +173,7 @@ void Viewer::on(const protocol::Hello& hello) {
 }
 
 void Viewer::welcome(std::uint32_t id, std::vector<std::string> missingAssets) {
-    protocol::Welcome message{.id = id, .session = session_->id(), .viewId = session::viewIdOf(session_->id()), .server = desk_.serverId, .build = CAUSTREAM_VERSION};
+    protocol::Welcome message{.id = id, .session = session_->id(), .viewId = session_->viewId(), .server = desk_.serverId, .build = CAUSTREAM_VERSION};
     message.gpu = desk_.renderer->gpuName();
     message.resumed = resumed_;
     message.rev = session_->rev();
@@ -205,8 +200,7 @@ void Viewer::welcome(std::uint32_t id, std::vector<std::string> missingAssets) {
 
 bool Viewer::follows(const Viewer& other) const {
     const session::Session* leader = other.session();
-    return ready_ && !following_.empty() && leader && &other != this &&
-           (following_ == leader->id() || following_ == session::viewIdOf(leader->id()));
+    return ready_ && !following_.empty() && leader && &other != this && leader->isNamed(following_);
 }
 
 void Viewer::tellFollowers() {
@@ -260,7 +254,7 @@ void Viewer::end() {
     if (!ready_) {
         return;
     }
-    desk_.kept.keep(session_->id(), keptSession(), session::nowUs() + desk_.limits.resumeS * kUsPerS);
+    desk_.kept.keep(session_->id(), keptSession(), session::nowUs() + desk_.limits.resumeS * session::kUsPerS);
     desk_.eachViewer([this](Viewer& viewer) {
         if (viewer.follows(*this)) {
             viewer.tellFollow(kLeaderGone);

@@ -4,6 +4,8 @@
 
 namespace caustream::session {
 
+inline constexpr std::uint64_t kUsPerS = 1'000'000;
+
 // Monotonic microseconds: the server's clock on the wire.
 inline std::uint64_t nowUs() {
     return static_cast<std::uint64_t>(

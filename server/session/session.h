@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "protocol/patch.h"
 #include "scene/scene.h"
+#include "session/random_id.h"
 
 namespace caustream::session {
 
@@ -22,7 +24,7 @@ class Session {
    public:
     // `rev`: of the document that the first change will be made to.
     Session(std::string id, const protocol::Limits& limits, bool strict, std::uint32_t rev = 0)
-        : id_(std::move(id)), limits_(limits), strict_(strict), rev_(rev) {}
+        : id_(std::move(id)), viewId_(viewIdOf(id_)), limits_(limits), strict_(strict), rev_(rev) {}
 
     // The document with `patch` merged in, checked; this session is as before.
     tl::expected<protocol::Applied, protocol::DecodeError> apply(const protocol::Json& patch) const;
@@ -39,6 +41,8 @@ class Session {
     bool commit(Proposal proposal);
 
     const std::string& id() const { return id_; }
+    const std::string& viewId() const { return viewId_; }  // what others follow it by
+    bool isNamed(std::string_view name) const { return name == id_ || name == viewId_; }
     std::uint32_t rev() const { return rev_; }
     const protocol::State& state() const { return current_.applied.state; }
     const protocol::Json& document() const { return current_.applied.document; }
@@ -51,7 +55,7 @@ class Session {
     std::uint64_t inputClientUs = 0;
 
    private:
-    std::string id_;
+    std::string id_, viewId_;
     protocol::Limits limits_;
     bool strict_;
     std::uint32_t rev_;
