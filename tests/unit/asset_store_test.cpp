@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "error.h"
 #include "session/asset_directory.h"
@@ -247,30 +248,10 @@ TEST(LoadPool, OneOwnersFilesAreReadInTheirOrder) {
     EXPECT_EQ(order.size(), 20u);
 }
 
-TEST(LoadPool, EndsWhatRunsAndTellsWhatWaits) {
+// Two tasks of one owner: whether each was told to end, where `end` says so while the first runs.
+std::vector<bool> toldOfTwo(LoadPool& pool, const std::function<void(const std::shared_ptr<std::atomic<bool>>& first)>& end) {
     Gate started, done;
     std::vector<bool> told;
-    LoadPool pool;
-    pool.submit(1, [&](const std::atomic<bool>& ended) {
-        started.open();
-        while (!ended) std::this_thread::yield();
-        told.push_back(true);
-    });
-    pool.submit(1, [&](const std::atomic<bool>& ended) {
-        told.push_back(ended);
-        done.open();
-    });
-    started.waitUntilOpen();
-    pool.end(1);
-    done.waitUntilOpen();
-    EXPECT_THAT(told, ElementsAre(true, true));
-    pool.end(2);  // nobody
-}
-
-TEST(LoadPool, OneTicketEndsOneTask) {
-    Gate started, done;
-    std::vector<bool> told;
-    LoadPool pool;
     const auto ticket = pool.submit(1, [&](const std::atomic<bool>& ended) {
         started.open();
         while (!ended) std::this_thread::yield();
@@ -281,9 +262,20 @@ TEST(LoadPool, OneTicketEndsOneTask) {
         done.open();
     });
     started.waitUntilOpen();
-    *ticket = true;
+    end(ticket);
     done.waitUntilOpen();
-    EXPECT_THAT(told, ElementsAre(true, false));
+    return told;
+}
+
+TEST(LoadPool, EndsWhatRunsAndTellsWhatWaits) {
+    LoadPool pool;
+    EXPECT_THAT(toldOfTwo(pool, [&](const auto&) { pool.end(1); }), ElementsAre(true, true));
+    pool.end(2);  // nobody
+}
+
+TEST(LoadPool, OneTicketEndsOneTask) {
+    LoadPool pool;
+    EXPECT_THAT(toldOfTwo(pool, [](const auto& ticket) { *ticket = true; }), ElementsAre(true, false));
 }
 
 TEST(LoadPool, GoingAwayEndsWhatRuns) {
